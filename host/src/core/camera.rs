@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The camera uniform of `core/camera`, and cameras built from what people say.
+
+use encase::ShaderType;
+use glam::dcamera::rh::{proj::directx, view};
+use glam::{DMat4, DVec3, Mat4, Vec2, Vec3};
+
+/// What makes a camera impossible.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CameraError {
+    /// Eye and target coincide, or one of them is not finite.
+    #[error("eye {eye} and target {target} give no direction: they must be finite and apart")]
+    Direction {
+        /// Position of the eye.
+        eye: Vec3,
+        /// Point looked at.
+        target: Vec3,
+    },
+    /// The field of view is not an angle that a picture can have.
+    #[error("field of view {degrees} degrees is impossible: it must lie between 0.1 and 170")]
+    FieldOfView {
+        /// The vertical angle, in degrees.
+        degrees: f32,
+    },
+    /// The depth range is empty.
+    #[error("near plane {near} m and far plane {far} m are impossible: 0 < near < far is needed")]
+    Planes {
+        /// Distance of the near plane.
+        near: f32,
+        /// Distance of the far plane.
+        far: f32,
+    },
+    /// The picture has no pixels.
+    #[error("a picture of {width}x{height} pixels is impossible: both must be at least 1")]
+    Viewport {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+    },
+}
+
+/// Which way clip depth runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DepthRange {
+    /// Near 0, far 1.
+    #[default]
+    Forward,
+    /// Near 1, far 0.
+    Reversed,
+}
+
+/// A perspective view in the words of a person. World in metres, y up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PerspectiveView {
+    /// Position of the eye.
+    pub eye: Vec3,
+    /// Point in the middle of the picture.
+    pub target: Vec3,
+    /// Vertical field of view, degrees.
+    pub field_of_view: f32,
+    /// Distance of the near plane, metres.
+    pub near: f32,
+    /// Distance of the far plane, metres; may be infinite.
+    pub far: f32,
+    /// Which way clip depth runs.
+    pub depth: DepthRange,
+}
+
+/// The uniform `Camera` of `core/camera`.
+#[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
+pub struct Camera {
+    /// World to clip.
+    pub clip_from_world: Mat4,
+    /// Clip to world.
+    pub world_from_clip: Mat4,
+    /// Position of the eye, metres.
+    pub eye: Vec3,
+    /// Clip depth of the near plane.
+    pub near_depth: f32,
+    /// Pixels.
+    pub viewport: Vec2,
+    /// Clip depth of the far plane.
+    pub far_depth: f32,
+    /// 0 perspective, 1 orthographic.
+    pub projection: u32,
+}
+
+impl Camera {
+    /// A perspective camera; matrices are composed and inverted in f64.
+    ///
+    /// # Errors
+    /// [`CameraError`] where the view is degenerate.
+    pub fn perspective(of: &PerspectiveView, viewport: [u32; 2]) -> Result<Self, CameraError> {
+        let direction = (of.target - of.eye).as_dvec3();
+        if !(direction.is_finite() && of.eye.is_finite() && direction.length() > 1e-6) {
+            return Err(CameraError::Direction { eye: of.eye, target: of.target });
+        }
+        if !(of.field_of_view >= 0.1 && of.field_of_view <= 170.0) {
+            return Err(CameraError::FieldOfView { degrees: of.field_of_view });
+        }
+        if !(of.near > 0.0 && of.near.is_finite() && of.far > of.near) {
+            return Err(CameraError::Planes { near: of.near, far: of.far });
+        }
+        let [width, height] = viewport;
+        if width == 0 || height == 0 {
+            return Err(CameraError::Viewport { width, height });
+        }
+        let forward = direction.normalize();
+        let up = if forward.cross(DVec3::Y).length() < 1e-4 { DVec3::NEG_Z } else { DVec3::Y };
+        let fov = f64::from(of.field_of_view).to_radians();
+        let aspect = f64::from(width) / f64::from(height);
+        let near = f64::from(of.near);
+        let projection = if of.far.is_finite() {
+            directx::perspective(fov, aspect, near, f64::from(of.far))
+        } else {
+            directx::perspective_infinite(fov, aspect, near)
+        };
+        // Reversing is depth' = w - depth in clip space.
+        let reverse = DMat4::from_cols_array(&[
+            1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0, 1.0,
+        ]);
+        let (projection, near_depth, far_depth) = match of.depth {
+            DepthRange::Forward => (projection, 0.0, 1.0),
+            DepthRange::Reversed => (reverse * projection, 1.0, 0.0),
+        };
+        let clip_from_world = projection * view::look_to_mat4(of.eye.as_dvec3(), forward, up);
+        Ok(Self {
+            clip_from_world: clip_from_world.as_mat4(),
+            world_from_clip: clip_from_world.inverse().as_mat4(),
+            eye: of.eye,
+            near_depth,
+            viewport: Vec2::new(width as f32, height as f32),
+            far_depth,
+            projection: 0,
+        })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn view() -> PerspectiveView {
+        PerspectiveView {
+            eye: Vec3::new(1.0, 2.0, 3.0),
+            target: Vec3::ZERO,
+            field_of_view: 50.0,
+            near: 0.1,
+            far: 50.0,
+            depth: DepthRange::Forward,
+        }
+    }
+
+    #[test]
+    fn near_and_far_planes_have_the_stated_depths() {
+        for depth in [DepthRange::Forward, DepthRange::Reversed] {
+            let view = PerspectiveView { depth, ..view() };
+            let camera = Camera::perspective(&view, [64, 32]).unwrap();
+            let forward = (view.target - view.eye).normalize();
+            for (distance, expected) in [(view.near, camera.near_depth), (view.far, camera.far_depth)] {
+                let clip = camera.clip_from_world * (view.eye + forward * distance).extend(1.0);
+                assert!((clip.z / clip.w - expected).abs() < 1e-4, "{depth:?} {distance}: {}", clip.z / clip.w);
+            }
+        }
+    }
+
+    #[test]
+    fn degenerate_views_are_refused() {
+        let wrong = [
+            PerspectiveView { target: view().eye, ..view() },
+            PerspectiveView { field_of_view: 0.0, ..view() },
+            PerspectiveView { field_of_view: f32::NAN, ..view() },
+            PerspectiveView { near: 0.0, ..view() },
+            PerspectiveView { far: 0.05, ..view() },
+            PerspectiveView { eye: Vec3::new(f32::INFINITY, 0.0, 0.0), ..view() },
+        ];
+        for view in wrong {
+            assert!(Camera::perspective(&view, [64, 32]).is_err(), "{view:?}");
+        }
+        assert!(Camera::perspective(&view(), [0, 32]).is_err());
+    }
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Input data: meshes, their loaders and the generators of scenes.
+//!
+//! Everything is right-handed, y up and in metres; albedos are linear RGB in 0..1. Generators are
+//! deterministic: the same parameters give the same mesh.
+
+#[cfg(feature = "command")]
+mod load;
+mod mesh;
+mod random;
+mod shapes;
+mod terrain;
+mod tree;
+
+#[cfg(feature = "command")]
+pub use load::{MeshError, load_mesh, mesh_from_bytes};
+pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};
+pub use random::Random;
+pub use shapes::{cuboid, plane, sphere, torus};
+pub use terrain::{TerrainParameters, terrain, terrain_height};
+pub use tree::{TreeParameters, tree};

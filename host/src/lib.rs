@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Runs Airlight's WGSL shader modules for stylized light in volumes.
+//!
+//! [`Gpu`] opens a device on WebGPU's default limits. [`Shaders`] composes modules and passes.
+//! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
+//! of plain functions that record passes into an encoder: [`scattering`].
+
+pub mod core;
+pub mod data;
+mod gpu;
+pub mod layout;
+mod pass;
+mod resource;
+pub mod scattering;
+#[cfg(feature = "command")]
+pub mod scenes;
+mod shaders;
+
+pub use airlight_validate as validate;
+pub use gpu::{Gpu, GpuError};
+pub use pass::{Bound, Pass, PassError, RenderStages, Resource};
+pub use resource::{Buffer, Sampler, Texture};
+pub use shaders::Shaders;

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Pipelines and layouts built from reflection; resources bound by name.
+
+use crate::gpu::{Gpu, GpuError};
+use crate::layout::{kind_text, layout_entry, mismatch};
+use crate::resource::{Buffer, Sampler, Texture};
+use crate::shaders::Shaders;
+use airlight_validate::{Binding, Composed, Definitions, Reflection, Stage};
+use std::borrow::Cow;
+
+/// Why a pass could not be built or bound.
+#[derive(Debug, thiserror::Error)]
+pub enum PassError {
+    /// The shader does not compose, or there is no such pass or permutation.
+    #[error(transparent)]
+    Shader(#[from] airlight_validate::Error),
+    /// The device refused.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// A resource was named that the pass does not have.
+    #[error("{pass} has no binding `{name}`; it expects {expected}")]
+    UnknownBinding {
+        /// The pass.
+        pass: String,
+        /// The unknown name.
+        name: String,
+        /// All that it expects.
+        expected: String,
+    },
+    /// A resource was not given.
+    #[error("{pass} needs the binding `{name}`; it expects {expected}")]
+    MissingBinding {
+        /// The pass.
+        pass: String,
+        /// The missing name.
+        name: String,
+        /// All that it expects.
+        expected: String,
+    },
+    /// A resource of the wrong type.
+    #[error("{pass}: binding `{name}` is {wanted}, not {given}")]
+    WrongResource {
+        /// The pass.
+        pass: String,
+        /// The binding.
+        name: String,
+        /// What the shader declares.
+        wanted: String,
+        /// What was given.
+        given: String,
+    },
+    /// An entry point that the pass does not have.
+    #[error("{pass} has no entry point `{name}`; it has {expected}")]
+    UnknownEntryPoint {
+        /// The pass.
+        pass: String,
+        /// The unknown name.
+        name: String,
+        /// Those it has.
+        expected: String,
+    },
+}
+
+/// A resource to bind.
+#[derive(Clone, Copy)]
+pub enum Resource<'a> {
+    /// A uniform or storage buffer.
+    Buffer(&'a Buffer),
+    /// A sampled or storage texture.
+    Texture(&'a Texture),
+    /// A sampler.
+    Sampler(&'a Sampler),
+}
+
+impl<'a> From<&'a Buffer> for Resource<'a> {
+    fn from(buffer: &'a Buffer) -> Self {
+        Self::Buffer(buffer)
+    }
+}
+
+impl<'a> From<&'a Texture> for Resource<'a> {
+    fn from(texture: &'a Texture) -> Self {
+        Self::Texture(texture)
+    }
+}
+
+impl<'a> From<&'a Sampler> for Resource<'a> {
+    fn from(sampler: &'a Sampler) -> Self {
+        Self::Sampler(sampler)
+    }
+}
+
+/// Resources bound to a pass.
+pub struct Bound {
+    group: wgpu::BindGroup,
+}
+
+struct ComputeEntry {
+    name: String,
+    workgroup: [u32; 3],
+    pipeline: wgpu::ComputePipeline,
+}
+
+enum Pipelines {
+    Compute(Vec<ComputeEntry>),
+    Render(wgpu::RenderPipeline),
+}
+
+/// How a render pipeline is made from the entry points of a pass.
+pub struct RenderStages<'a> {
+    /// Vertex entry point.
+    pub vertex: &'a str,
+    /// Fragment entry point, none for depth only.
+    pub fragment: Option<&'a str>,
+    /// Layout of the vertex buffer, none where the vertex index is enough.
+    pub vertices: Option<wgpu::VertexBufferLayout<'a>>,
+    /// Format of the colour target.
+    pub target: Option<wgpu::TextureFormat>,
+    /// Depth test and write.
+    pub depth: Option<(wgpu::CompareFunction, bool)>,
+}
+
+/// A pass of the library with its pipelines and the layout of its resources.
+pub struct Pass {
+    name: String,
+    bindings: Vec<Binding>,
+    layout: wgpu::BindGroupLayout,
+    pipelines: Pipelines,
+}
+
+impl Pass {
+    /// All compute entry points of a pass in one of its shipped permutations.
+    ///
+    /// # Errors
+    /// [`PassError::Shader`], [`PassError::Gpu`].
+    pub fn compute(gpu: &Gpu, shaders: &Shaders, pass: &str, permutation: &str) -> Result<Self, PassError> {
+        Self::compute_from(gpu, &shaders.compose(pass, permutation)?)
+    }
+
+    /// All compute entry points of a pass with definitions of the caller's.
+    ///
+    /// # Errors
+    /// As [`Pass::compute`].
+    pub fn compute_with(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        pass: &str,
+        definitions: &Definitions,
+    ) -> Result<Self, PassError> {
+        Self::compute_from(gpu, &shaders.compose_with(pass, definitions)?)
+    }
+
+    /// All compute entry points of a composed pass.
+    ///
+    /// # Errors
+    /// [`PassError::Gpu`].
+    pub fn compute_from(gpu: &Gpu, composed: &Composed) -> Result<Self, PassError> {
+        let reflection = composed.reflect();
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let entries: Vec<_> =
+            reflection.entry_points.iter().filter(|entry| entry.stage == Stage::Compute).collect();
+        let used: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+        let (bindings, layout, pipeline_layout) = layouts(gpu, &reflection, &used, wgpu::ShaderStages::COMPUTE);
+        let module = shader_module(gpu, composed);
+        let pipelines = entries
+            .iter()
+            .map(|entry| ComputeEntry {
+                name: entry.name.clone(),
+                workgroup: entry.workgroup_size,
+                pipeline: gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(&composed.pass),
+                    layout: Some(&pipeline_layout),
+                    module: &module,
+                    entry_point: Some(&entry.name),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    cache: None,
+                }),
+            })
+            .collect();
+        caught(scope)?;
+        Ok(Self { name: composed.pass.clone(), bindings, layout, pipelines: Pipelines::Compute(pipelines) })
+    }
+
+    /// A render pipeline of two entry points of a composed pass. Triangles, both faces.
+    ///
+    /// # Errors
+    /// [`PassError::UnknownEntryPoint`], [`PassError::Gpu`].
+    pub fn render(gpu: &Gpu, composed: &Composed, stages: &RenderStages<'_>) -> Result<Self, PassError> {
+        let reflection = composed.reflect();
+        let mut used = vec![stages.vertex];
+        used.extend(stages.fragment);
+        for name in &used {
+            if !reflection.entry_points.iter().any(|entry| entry.name == **name) {
+                let names: Vec<_> = reflection.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+                return Err(PassError::UnknownEntryPoint {
+                    pass: composed.pass.clone(),
+                    name: (*name).to_owned(),
+                    expected: names.join(", "),
+                });
+            }
+        }
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let (bindings, layout, pipeline_layout) =
+            layouts(gpu, &reflection, &used, wgpu::ShaderStages::VERTEX_FRAGMENT);
+        let module = shader_module(gpu, composed);
+        let targets = [stages.target.map(wgpu::ColorTargetState::from)];
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(&composed.pass),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(stages.vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: if stages.vertices.is_some() { std::slice::from_ref(&stages.vertices) } else { &[] },
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: stages.depth.map(|(compare, write)| wgpu::DepthStencilState {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_write_enabled: Some(write),
+                depth_compare: Some(compare),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: stages.fragment.map(|fragment| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        caught(scope)?;
+        Ok(Self { name: composed.pass.clone(), bindings, layout, pipelines: Pipelines::Render(pipeline) })
+    }
+
+    /// What the pass expects, in one line.
+    pub fn expects(&self) -> String {
+        let list: Vec<_> =
+            self.bindings.iter().map(|binding| format!("`{}` ({})", binding.name, kind_text(&binding.kind))).collect();
+        if list.is_empty() { "no bindings".to_owned() } else { list.join(", ") }
+    }
+
+    /// The bindings that the pass's entry points use.
+    pub fn bindings(&self) -> &[Binding] {
+        &self.bindings
+    }
+
+    /// Binds resources by name.
+    ///
+    /// # Errors
+    /// [`PassError`] for an unknown, missing or ill-typed name.
+    pub fn bind(&self, gpu: &Gpu, resources: &[(&str, Resource<'_>)]) -> Result<Bound, PassError> {
+        if let Some((name, _)) = resources.iter().find(|(name, _)| !self.bindings.iter().any(|b| b.name == **name)) {
+            return Err(PassError::UnknownBinding {
+                pass: self.name.clone(),
+                name: (*name).to_owned(),
+                expected: self.expects(),
+            });
+        }
+        self.bind_known(gpu, resources)
+    }
+
+    /// Like [`Pass::bind`], but passes over names that this permutation does not have.
+    ///
+    /// # Errors
+    /// [`PassError`] for a missing or ill-typed name.
+    pub fn bind_known(&self, gpu: &Gpu, resources: &[(&str, Resource<'_>)]) -> Result<Bound, PassError> {
+        let mut entries = Vec::new();
+        for binding in &self.bindings {
+            let found = resources.iter().find(|(name, _)| *name == binding.name);
+            let Some((_, resource)) = found else {
+                return Err(PassError::MissingBinding {
+                    pass: self.name.clone(),
+                    name: binding.name.clone(),
+                    expected: self.expects(),
+                });
+            };
+            if let Some(given) = mismatch(&binding.kind, *resource) {
+                return Err(PassError::WrongResource {
+                    pass: self.name.clone(),
+                    name: binding.name.clone(),
+                    wanted: kind_text(&binding.kind),
+                    given,
+                });
+            }
+            entries.push(wgpu::BindGroupEntry {
+                binding: binding.binding,
+                resource: match resource {
+                    Resource::Buffer(buffer) => buffer.raw.as_entire_binding(),
+                    Resource::Texture(texture) => wgpu::BindingResource::TextureView(&texture.view),
+                    Resource::Sampler(sampler) => wgpu::BindingResource::Sampler(&sampler.raw),
+                },
+            });
+        }
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&self.name),
+            layout: &self.layout,
+            entries: &entries,
+        });
+        caught(scope)?;
+        Ok(Bound { group })
+    }
+
+    /// Records the only compute entry point over at least `size` invocations.
+    pub fn dispatch(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound, size: [u32; 3]) {
+        if let Pipelines::Compute(entries) = &self.pipelines
+            && let Some(entry) = entries.first()
+        {
+            let groups = std::array::from_fn(|axis| size[axis].div_ceil(entry.workgroup[axis].max(1)));
+            record(encoder, &entry.pipeline, bound, groups);
+        }
+    }
+
+    /// Records the named compute entry point over `groups` workgroups.
+    ///
+    /// # Errors
+    /// [`PassError::UnknownEntryPoint`].
+    pub fn dispatch_groups(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        bound: &Bound,
+        entry_point: &str,
+        groups: [u32; 3],
+    ) -> Result<(), PassError> {
+        let entries: &[ComputeEntry] = if let Pipelines::Compute(entries) = &self.pipelines { entries } else { &[] };
+        let Some(entry) = entries.iter().find(|entry| entry.name == entry_point) else {
+            let names: Vec<_> = entries.iter().map(|entry| entry.name.as_str()).collect();
+            return Err(PassError::UnknownEntryPoint {
+                pass: self.name.clone(),
+                name: entry_point.to_owned(),
+                expected: names.join(", "),
+            });
+        };
+        record(encoder, &entry.pipeline, bound, groups);
+        Ok(())
+    }
+
+    /// Sets the render pipeline and its resources; the caller draws.
+    pub fn set(&self, render: &mut wgpu::RenderPass<'_>, bound: &Bound) {
+        if let Pipelines::Render(pipeline) = &self.pipelines {
+            render.set_pipeline(pipeline);
+            render.set_bind_group(0, &bound.group, &[]);
+        }
+    }
+}
+
+fn record(encoder: &mut wgpu::CommandEncoder, pipeline: &wgpu::ComputePipeline, bound: &Bound, groups: [u32; 3]) {
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, &bound.group, &[]);
+    pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
+}
+
+fn layouts(
+    gpu: &Gpu,
+    reflection: &Reflection,
+    entry_points: &[&str],
+    visibility: wgpu::ShaderStages,
+) -> (Vec<Binding>, wgpu::BindGroupLayout, wgpu::PipelineLayout) {
+    let bindings: Vec<Binding> = reflection
+        .bindings
+        .iter()
+        .filter(|binding| binding.entry_points.iter().any(|name| entry_points.contains(&name.as_str())))
+        .cloned()
+        .collect();
+    let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, visibility)).collect();
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    (bindings, layout, pipeline_layout)
+}
+
+fn shader_module(gpu: &Gpu, composed: &Composed) -> wgpu::ShaderModule {
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(&composed.pass),
+        source: wgpu::ShaderSource::Naga(Cow::Owned(composed.module.clone())),
+    })
+}
+
+/// The error that a scope caught. On native back ends it is known at once; a browser reports it as uncaptured later.
+fn caught(scope: wgpu::ErrorScopeGuard) -> Result<(), GpuError> {
+    use std::future::Future;
+    let mut future = std::pin::pin!(scope.pop());
+    let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+    match future.as_mut().poll(&mut context) {
+        std::task::Poll::Ready(Some(error)) => Err(GpuError::Refused(error.to_string())),
+        std::task::Poll::Ready(None) | std::task::Poll::Pending => Ok(()),
+    }
+}

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Buffers, textures and samplers that know enough of themselves to be bound by name and read back.
+
+use crate::gpu::{Gpu, GpuError};
+use encase::ShaderType;
+use encase::internal::WriteInto;
+use half::f16;
+
+/// A buffer.
+pub struct Buffer {
+    /// The buffer itself.
+    pub raw: wgpu::Buffer,
+}
+
+impl Buffer {
+    /// A uniform buffer with the WGSL layout of `value`.
+    pub fn uniform<T: ShaderType + WriteInto>(gpu: &Gpu, value: &T) -> Self {
+        let mut bytes = encase::UniformBuffer::new(Vec::<u8>::new());
+        // Writing to a growing vector cannot fail: the error is about fixed capacities.
+        bytes.write(value).unwrap_or_default();
+        Self::with_bytes(gpu, &bytes.into_inner(), wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// A zeroed storage buffer of `size` bytes, which later passes may also bind as a uniform.
+    pub fn storage(gpu: &Gpu, size: u64) -> Self {
+        Self {
+            raw: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: size.next_multiple_of(16).max(16),
+                usage: Self::usages(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM),
+                mapped_at_creation: false,
+            }),
+        }
+    }
+
+    /// A buffer with the given contents, padded with zeros to a multiple of 16 bytes.
+    pub fn with_bytes(gpu: &Gpu, bytes: &[u8], usage: wgpu::BufferUsages) -> Self {
+        let mut padded = bytes.to_vec();
+        padded.resize(bytes.len().next_multiple_of(16).max(16), 0);
+        let raw = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: padded.len() as u64,
+            usage: Self::usages(usage),
+            mapped_at_creation: false,
+        });
+        gpu.queue.write_buffer(&raw, 0, &padded);
+        Self { raw }
+    }
+
+    fn usages(usage: wgpu::BufferUsages) -> wgpu::BufferUsages {
+        usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC
+    }
+
+    /// Replaces the start of the contents by the WGSL layout of `value`.
+    pub fn write<T: ShaderType + WriteInto>(&self, gpu: &Gpu, value: &T) {
+        let mut bytes = encase::UniformBuffer::new(Vec::<u8>::new());
+        bytes.write(value).unwrap_or_default();
+        gpu.queue.write_buffer(&self.raw, 0, bytes.as_ref());
+    }
+
+    /// The contents.
+    ///
+    /// # Errors
+    /// [`GpuError::Reading`], [`GpuError::Refused`].
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
+        let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: self.raw.size(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.encoder();
+        encoder.copy_buffer_to_buffer(&self.raw, 0, &copy, 0, self.raw.size());
+        gpu.submit(encoder)?;
+        map(gpu, &copy)
+    }
+
+    /// The contents as little-endian 32-bit words.
+    ///
+    /// # Errors
+    /// As [`Buffer::read`].
+    pub fn read_words(&self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        let bytes = self.read(gpu)?;
+        Ok(bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect())
+    }
+
+    /// The contents as 32-bit floats.
+    ///
+    /// # Errors
+    /// As [`Buffer::read`].
+    pub fn read_floats(&self, gpu: &Gpu) -> Result<Vec<f32>, GpuError> {
+        Ok(self.read_words(gpu)?.into_iter().map(f32::from_bits).collect())
+    }
+}
+
+fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        // A closed channel means that the reader is gone already.
+        let _ = sender.send(result);
+    });
+    gpu.wait()?;
+    let reading = |message: String| GpuError::Reading(message);
+    receiver
+        .recv()
+        .map_err(|error| reading(error.to_string()))?
+        .map_err(|error| reading(error.to_string()))?;
+    let view = buffer.get_mapped_range(..).map_err(|error| reading(error.to_string()))?;
+    Ok(view.to_vec())
+}
+
+/// A 2D texture or an array of them, with one view of the whole.
+pub struct Texture {
+    /// The texture itself.
+    pub raw: wgpu::Texture,
+    /// A view of all layers.
+    pub view: wgpu::TextureView,
+    /// How `view` presents it.
+    pub dimension: wgpu::TextureViewDimension,
+}
+
+impl Texture {
+    /// A texture of one layer.
+    pub fn new(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> Self {
+        Self::create(gpu, [size[0], size[1], 1], format, usage, wgpu::TextureViewDimension::D2)
+    }
+
+    /// An array of `size[2]` layers, also where that is one.
+    pub fn array(gpu: &Gpu, size: [u32; 3], format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> Self {
+        Self::create(gpu, size, format, usage, wgpu::TextureViewDimension::D2Array)
+    }
+
+    /// What most passes write: a storage texture that the next pass reads, of one layer.
+    pub fn storage(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
+        Self::new(gpu, size, format, wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING)
+    }
+
+    /// A render target that later passes read, of one layer.
+    pub fn target(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
+        Self::new(gpu, size, format, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING)
+    }
+
+    fn create(
+        gpu: &Gpu,
+        size: [u32; 3],
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+        dimension: wgpu::TextureViewDimension,
+    ) -> Self {
+        let copies = if format.is_depth_stencil_format() {
+            wgpu::TextureUsages::COPY_SRC
+        } else {
+            wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST
+        };
+        let raw = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: size[2] },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: usage | copies,
+            view_formats: &[],
+        });
+        let view = raw.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
+        Self { raw, view, dimension }
+    }
+
+    /// Width, height, layers.
+    pub fn size(&self) -> [u32; 3] {
+        [self.raw.width(), self.raw.height(), self.raw.depth_or_array_layers()]
+    }
+
+    /// Bytes of all texels.
+    pub fn memory(&self) -> u64 {
+        let [width, height, layers] = self.size().map(u64::from);
+        width * height * layers * u64::from(self.raw.format().block_copy_size(None).unwrap_or(0))
+    }
+
+    /// Replaces all texels. `values`: row-major, layer by layer, all channels of a texel together, in the
+    /// range of the format; floats are rounded to it.
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] for a wrong number of values or a format that cannot be written.
+    pub fn write(&self, gpu: &Gpu, values: &[f32]) -> Result<(), GpuError> {
+        let format = self.raw.format();
+        let [width, height, layers] = self.size();
+        let channels = usize::from(format.components());
+        let expected = width as usize * height as usize * layers as usize * channels;
+        if values.len() != expected {
+            return Err(GpuError::Refused(format!("a texture of {expected} values was given {}", values.len())));
+        }
+        let bytes = encode(format, values)?;
+        gpu.queue.write_texture(
+            self.raw.as_image_copy(),
+            &bytes,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some((bytes.len() / (height as usize * layers as usize)) as u32),
+                rows_per_image: Some(height),
+            },
+            self.raw.size(),
+        );
+        gpu.check()
+    }
+
+    /// All texels as floats, in the order that [`Texture::write`] takes.
+    ///
+    /// # Errors
+    /// [`GpuError::Reading`], [`GpuError::Refused`].
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<f32>, GpuError> {
+        let format = self.raw.format();
+        let [width, height, layers] = self.size();
+        let texel = format.block_copy_size(Some(wgpu::TextureAspect::All)).or(format.block_copy_size(None));
+        let texel = texel.ok_or_else(|| GpuError::Reading(format!("{format:?} cannot be read")))?;
+        let tight = width * texel;
+        let padded = tight.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let rows = u64::from(height) * u64::from(layers);
+        let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(padded) * rows,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = gpu.encoder();
+        encoder.copy_texture_to_buffer(
+            self.raw.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &copy,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded),
+                    rows_per_image: Some(height),
+                },
+            },
+            self.raw.size(),
+        );
+        gpu.submit(encoder)?;
+        let bytes = map(gpu, &copy)?;
+        let mut values = Vec::new();
+        for row in bytes.chunks_exact(padded as usize) {
+            decode(format, &row[..tight as usize], &mut values)?;
+        }
+        Ok(values)
+    }
+}
+
+fn encode(format: wgpu::TextureFormat, values: &[f32]) -> Result<Vec<u8>, GpuError> {
+    use wgpu::TextureFormat as F;
+    let unorm = |value: &f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+    Ok(match format {
+        F::R32Float | F::Rg32Float | F::Rgba32Float => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+        F::R16Float | F::Rg16Float | F::Rgba16Float => {
+            values.iter().flat_map(|v| f16::from_f32(*v).to_le_bytes()).collect()
+        }
+        F::R8Unorm | F::Rg8Unorm | F::Rgba8Unorm => values.iter().map(unorm).collect(),
+        F::R32Uint => values.iter().flat_map(|v| (*v as u32).to_le_bytes()).collect(),
+        other => return Err(GpuError::Refused(format!("values cannot be written to {other:?}"))),
+    })
+}
+
+fn decode(format: wgpu::TextureFormat, bytes: &[u8], values: &mut Vec<f32>) -> Result<(), GpuError> {
+    use wgpu::TextureFormat as F;
+    match format {
+        F::R32Float | F::Rg32Float | F::Rgba32Float | F::Depth32Float => {
+            values.extend(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
+        }
+        F::R16Float | F::Rg16Float | F::Rgba16Float => {
+            values.extend(bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()));
+        }
+        F::R8Unorm | F::Rg8Unorm | F::Rgba8Unorm => values.extend(bytes.iter().map(|b| f32::from(*b) / 255.0)),
+        F::R32Uint => {
+            values.extend(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32));
+        }
+        other => return Err(GpuError::Reading(format!("{other:?} cannot be read"))),
+    }
+    Ok(())
+}
+
+/// A sampler.
+pub struct Sampler {
+    /// The sampler itself.
+    pub raw: wgpu::Sampler,
+    /// True for a comparison sampler.
+    pub comparison: bool,
+}
+
+impl Sampler {
+    /// Linear, clamped to the edge in u and repeating in v: for maps whose rows may wrap.
+    pub fn rows(gpu: &Gpu) -> Self {
+        Self::create(
+            gpu,
+            &wgpu::SamplerDescriptor {
+                address_mode_v: wgpu::AddressMode::Repeat,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            },
+        )
+    }
+
+    /// A comparison sampler for shadow maps with forward depth.
+    pub fn shadow(gpu: &Gpu) -> Self {
+        Self::create(
+            gpu,
+            &wgpu::SamplerDescriptor {
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                compare: Some(wgpu::CompareFunction::LessEqual),
+                ..Default::default()
+            },
+        )
+    }
+
+    fn create(gpu: &Gpu, descriptor: &wgpu::SamplerDescriptor<'_>) -> Self {
+        Self { raw: gpu.device.create_sampler(descriptor), comparison: descriptor.compare.is_some() }
+    }
+}

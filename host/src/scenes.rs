@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The scenes of the gallery and the benchmarks: real meshes among generated trees and terrain.
+
+use crate::core::{DepthRange, PerspectiveView, Sky, direction_from_angles};
+use crate::data::{
+    Bounds, Mesh, MeshError, TerrainParameters, TreeParameters, mesh_from_bytes, plane, terrain, terrain_height,
+    torus, tree,
+};
+use crate::scattering::{Medium, SettingsError};
+use glam::{Mat4, Quat, Vec2, Vec3};
+
+/// Meshes that are part of the program, from `host/assets`.
+pub const BUNNY: (&str, &[u8]) = ("bunny.obj", include_bytes!("../assets/bunny.obj"));
+/// See [`BUNNY`].
+pub const SUZANNE: (&str, &[u8]) = ("suzanne.obj", include_bytes!("../assets/suzanne.obj"));
+
+/// All that a picture needs.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name, as in `--only scattering/NAME`.
+    pub name: &'static str,
+    /// One line about it.
+    pub title: &'static str,
+    /// What is drawn.
+    pub mesh: Mesh,
+    /// The camera.
+    pub view: PerspectiveView,
+    /// Unit vector TOWARDS the light.
+    pub light: Vec3,
+    /// Radiance of the light, linear RGB.
+    pub radiance: Vec3,
+    /// Radiance of the sky and the ground.
+    pub sky: Sky,
+    /// Air.
+    pub medium: Medium,
+    /// Factor on the radiance before the tone curve.
+    pub exposure: f32,
+}
+
+/// Why a scene could not be built.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// A mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The medium.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}
+
+/// The names that [`scene`] knows.
+pub const SCENES: [&str; 4] = ["foliage", "terrain", "torus", "plane"];
+
+/// A scene by name; none if there is no such scene.
+///
+/// # Errors
+/// [`SceneError`].
+pub fn scene(name: &str) -> Result<Option<Scene>, SceneError> {
+    Ok(Some(match name {
+        "foliage" => foliage()?,
+        "terrain" => suzanne_on_terrain()?,
+        "torus" => torus_scene()?,
+        "plane" => plane_scene()?,
+        _ => return Ok(None),
+    }))
+}
+
+fn view(eye: Vec3, target: Vec3, field_of_view: f32, near: f32, far: f32) -> PerspectiveView {
+    PerspectiveView { eye, target, field_of_view, near, far, depth: DepthRange::Forward }
+}
+
+/// `mesh` scaled to `height` with its lowest point at the origin.
+fn standing(mesh: Mesh, height: f32) -> Mesh {
+    let bounds = mesh.bounds().unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
+    let foot = Vec3::new(bounds.center().x, bounds.min.y, bounds.center().z);
+    let scale = height / bounds.size().y.max(1e-6);
+    mesh.transformed(Mat4::from_scale(Vec3::splat(scale)) * Mat4::from_translation(-foot))
+}
+
+fn placed(mesh: Mesh, at: Vec3, turn: f32) -> Mesh {
+    mesh.transformed(Mat4::from_rotation_translation(Quat::from_rotation_y(turn.to_radians()), at))
+}
+
+/// A bunny under a leafy tree, late light from behind the crown.
+fn foliage() -> Result<Scene, SceneError> {
+    let mut mesh = terrain(&TerrainParameters { seed: 11, size: 30.0, resolution: 128, height: 0.5 })
+        .with_albedo(Vec3::new(0.16, 0.17, 0.08));
+    let ground = |x, z| {
+        terrain_height(&TerrainParameters { seed: 11, size: 30.0, resolution: 128, height: 0.5 }, x, z)
+    };
+    let crown = tree(&TreeParameters { seed: 4, leaves: 12000, ..TreeParameters::default() });
+    mesh.append(&placed(crown, Vec3::new(0.3, ground(0.3, -0.4) - 0.05, -0.4), 20.0));
+    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 0.95).with_albedo(Vec3::new(0.75, 0.70, 0.64));
+    mesh.append(&placed(bunny, Vec3::new(-1.15, ground(-1.15, 1.35) - 0.02, 1.35), 15.0));
+    Ok(Scene {
+        name: "foliage",
+        title: "Bunny under a tree",
+        mesh,
+        view: view(Vec3::new(-1.2, 1.25, 7.6), Vec3::new(-0.35, 2.45, 0.0), 46.0, 0.1, 26.0),
+        light: direction_from_angles(152.0, 47.0),
+        radiance: Vec3::new(17.0, 13.6, 9.4),
+        sky: Sky::new(Vec3::new(0.20, 0.34, 0.58), Vec3::new(0.62, 0.66, 0.70), Vec3::new(0.08, 0.08, 0.06)),
+        medium: Medium::new(0.05, Vec3::splat(0.96), 0.45, 26.0)?,
+        exposure: 0.9,
+    })
+}
+
+/// Suzanne on a ridge, low sun.
+fn suzanne_on_terrain() -> Result<Scene, SceneError> {
+    let parameters = TerrainParameters::default();
+    let mut mesh = terrain(&parameters);
+    let at = Vec2::new(-2.0, 3.0);
+    let ground = terrain_height(&parameters, at.x, at.y);
+    let head = standing(mesh_from_bytes(SUZANNE.0, SUZANNE.1)?, 3.6).with_albedo(Vec3::new(0.62, 0.33, 0.18));
+    mesh.append(&placed(head, Vec3::new(at.x, ground - 0.3, at.y), -25.0));
+    Ok(Scene {
+        name: "terrain",
+        title: "Suzanne on a terrain",
+        mesh,
+        view: view(
+            Vec3::new(at.x + 4.0, ground + 3.2, at.y + 11.5),
+            Vec3::new(at.x + 0.8, ground + 1.6, at.y),
+            48.0,
+            0.2,
+            60.0,
+        ),
+        light: direction_from_angles(228.0, 21.0),
+        radiance: Vec3::new(18.0, 11.5, 6.2),
+        sky: Sky::new(Vec3::new(0.16, 0.24, 0.44), Vec3::new(0.72, 0.52, 0.38), Vec3::new(0.08, 0.07, 0.07)),
+        medium: Medium::new(0.03, Vec3::splat(0.95), 0.35, 60.0)?,
+        exposure: 0.9,
+    })
+}
+
+/// A torus that stands in a shaft: the case that rings.
+fn torus_scene() -> Result<Scene, SceneError> {
+    let mut mesh = plane(Vec2::splat(40.0), 8).with_albedo(Vec3::new(0.32, 0.31, 0.30));
+    let ring = torus(1.5, 0.5, 128, 48).with_albedo(Vec3::new(0.70, 0.20, 0.11));
+    let stand = Mat4::from_translation(Vec3::new(0.0, 2.3, 0.0))
+        * Mat4::from_rotation_y(0.35)
+        * Mat4::from_rotation_x(1.25);
+    mesh.append(&ring.transformed(stand));
+    Ok(Scene {
+        name: "torus",
+        title: "A torus",
+        mesh,
+        view: view(Vec3::new(-3.4, 2.0, 6.6), Vec3::new(0.15, 1.75, 0.0), 44.0, 0.1, 24.0),
+        light: direction_from_angles(140.0, 46.0),
+        radiance: Vec3::new(15.0, 13.5, 11.5),
+        sky: Sky::new(Vec3::new(0.05, 0.07, 0.12), Vec3::new(0.11, 0.13, 0.17), Vec3::new(0.04, 0.04, 0.04)),
+        medium: Medium::new(0.07, Vec3::splat(0.95), 0.3, 24.0)?,
+        exposure: 1.0,
+    })
+}
+
+/// A level plate under an overhead light: one depth in every texel, the worst case for ringing.
+fn plane_scene() -> Result<Scene, SceneError> {
+    let mut mesh = plane(Vec2::splat(16.0), 4).with_albedo(Vec3::splat(0.4));
+    let plate = plane(Vec2::splat(4.0), 1)
+        .transformed(Mat4::from_translation(Vec3::new(0.0, 2.5, 0.0)))
+        .with_albedo(Vec3::splat(0.6));
+    mesh.append(&plate);
+    Ok(Scene {
+        name: "plane",
+        title: "A plate under an overhead light",
+        mesh,
+        view: view(Vec3::new(0.0, 1.5, 7.0), Vec3::new(0.0, 1.6, 0.0), 50.0, 0.1, 20.0),
+        light: Vec3::Y,
+        radiance: Vec3::splat(12.0),
+        sky: Sky::new(Vec3::splat(0.05), Vec3::splat(0.1), Vec3::splat(0.03)),
+        medium: Medium::new(0.08, Vec3::splat(0.95), 0.0, 20.0)?,
+        exposure: 1.0,
+    })
+}
+
+/// A view that frames a mesh, and the far plane that goes with it.
+pub fn framing(bounds: &Bounds, field_of_view: f32) -> PerspectiveView {
+    let radius = bounds.radius().max(1e-4);
+    let distance = 1.25 * radius / (0.5 * field_of_view.to_radians()).sin();
+    let eye = bounds.center() + Vec3::new(-0.45, 0.28, 1.0).normalize() * distance;
+    view(eye, bounds.center(), field_of_view, (distance - radius).max(0.02 * radius) * 0.2, distance + 2.0 * radius)
+}

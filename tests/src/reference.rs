@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! One reference a system, under the system's name, and one for each shared building block.
+
+pub mod camera;
+pub mod fourier;
+pub mod phase;
+pub mod prefix_sum;
+pub mod scattering;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The `#import` declarations of a file, with the place of each.
+//!
+//! naga_oil drops an import that nothing uses, and with it the error that it names no module; and
+//! its positions shift where a definition was replaced earlier. So declarations are read here.
+
+use crate::scan::{is_identifier, without_comments};
+
+/// One imported path: a module, or an item of one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Import {
+    /// Full path, `airlight::core::camera` or `airlight::core::camera::Camera`.
+    pub path: String,
+    /// Line of its last part, from 1.
+    pub line: u32,
+    /// Column of its last part, from 1.
+    pub column: u32,
+}
+
+/// A word, `::`-joined, or a single character, with its line and column.
+type Token = (String, u32, u32);
+
+/// Every import that a file declares, in conditional parts too.
+pub(crate) fn declared(source: &str) -> Vec<Import> {
+    let text = without_comments(source);
+    let lines: Vec<&str> = text.lines().collect();
+    let mut imports = Vec::new();
+    let mut index = 0;
+    while index < lines.len() {
+        let Some(offset) = statement(lines[index]) else {
+            index += 1;
+            continue;
+        };
+        // A statement goes on until its braces are closed.
+        let mut tokens = Vec::new();
+        let mut open = 0_i32;
+        let mut skip = offset;
+        loop {
+            let line = lines[index];
+            tokenize(line, skip, index as u32 + 1, &mut tokens);
+            open += line.matches('{').count() as i32 - line.matches('}').count() as i32;
+            skip = 0;
+            index += 1;
+            if open <= 0 || index >= lines.len() {
+                break;
+            }
+        }
+        read(&tokens, &mut imports);
+    }
+    imports
+}
+
+/// Where the path begins, in characters, if the line is an import statement.
+fn statement(line: &str) -> Option<usize> {
+    let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("import")?;
+    rest.starts_with(char::is_whitespace).then(|| line.chars().count() - rest.chars().count())
+}
+
+fn tokenize(line: &str, skip: usize, number: u32, tokens: &mut Vec<Token>) {
+    let letters: Vec<char> = line.chars().collect();
+    let mut at = skip;
+    while at < letters.len() {
+        let start = at;
+        while at < letters.len() && (is_identifier(letters[at]) || letters[at] == ':') {
+            at += 1;
+        }
+        if at > start {
+            tokens.push((letters[start..at].iter().collect(), number, start as u32 + 1));
+        } else {
+            if !letters[at].is_whitespace() {
+                tokens.push((letters[at].to_string(), number, at as u32 + 1));
+            }
+            at += 1;
+        }
+    }
+}
+
+fn read(tokens: &[Token], imports: &mut Vec<Import>) {
+    let mut prefixes: Vec<String> = Vec::new();
+    let mut renamed = false;
+    for (index, (word, line, column)) in tokens.iter().enumerate() {
+        match word.as_str() {
+            "{" | "," | ";" => {}
+            "}" => {
+                prefixes.pop();
+            }
+            "as" => renamed = true,
+            _ if renamed => renamed = false,
+            _ => {
+                let path = format!("{}{word}", prefixes.concat());
+                if tokens.get(index + 1).is_some_and(|next| next.0 == "{") {
+                    prefixes.push(word.clone());
+                } else {
+                    imports.push(Import { path, line: *line, column: *column });
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paths(source: &str) -> Vec<(String, u32, u32)> {
+        declared(source).into_iter().map(|i| (i.path, i.line, i.column)).collect()
+    }
+
+    #[test]
+    fn every_form_is_read() {
+        let source = "// #import no::no\n#import a::b\n#import a::c as d\n#import a::e::{\n  f, // x\n  g as h,\n  i::{j}\n}\nfn import_() {}\n";
+        let expected =
+            [("a::b", 2, 9), ("a::c", 3, 9), ("a::e::f", 5, 3), ("a::e::g", 6, 3), ("a::e::i::j", 7, 7)];
+        let expected: Vec<_> = expected.map(|(path, line, column)| (path.to_owned(), line, column)).to_vec();
+        assert_eq!(paths(source), expected);
+    }
+}

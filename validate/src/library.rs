@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A library of shader modules, passes and permutations.
+
+use crate::{Error, Location, Permutation, imports, permutations};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// An algorithm module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModuleSource {
+    /// Import path, `airlight::<system>::<module>`.
+    pub path: String,
+    /// File, relative to the root of the library, with `/`.
+    pub file: String,
+    /// WGSL text with naga_oil directives.
+    pub source: String,
+    /// Import paths of the modules that it uses, sorted.
+    pub imports: Vec<String>,
+}
+
+/// A pass.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PassSource {
+    /// Name, `<system>/<pass>`.
+    pub name: String,
+    /// File, relative to the root of the library, with `/`.
+    pub file: String,
+    /// WGSL text with naga_oil directives.
+    pub source: String,
+    /// Import paths of the modules that it uses, sorted.
+    pub imports: Vec<String>,
+}
+
+/// Modules, passes and permutations.
+#[derive(Clone, Debug)]
+pub struct Library {
+    pub(crate) modules: Vec<ModuleSource>,
+    pub(crate) passes: Vec<PassSource>,
+    /// Permutations by the name of the pass.
+    pub(crate) permutations: BTreeMap<String, Vec<Permutation>>,
+    /// Passes that no permutations file lists, and listed ones that have no file.
+    pub(crate) unlisted: Vec<(Location, String)>,
+    root: Option<PathBuf>,
+}
+
+impl Library {
+    /// The library that this version of Airlight ships.
+    pub fn builtin() -> Self {
+        let modules = airlight_wgsl::MODULES.iter().map(|module| ModuleSource {
+            path: module.path.to_owned(),
+            file: module.file.to_owned(),
+            source: module.source.to_owned(),
+            imports: Vec::new(),
+        });
+        let passes = airlight_wgsl::PASSES
+            .iter()
+            .map(|pass| (pass.name.to_owned(), pass.file.to_owned(), pass.source.to_owned()));
+        let systems = airlight_wgsl::SYSTEMS
+            .iter()
+            .map(|system| (system.name.to_owned(), system.permutations.to_owned()));
+        let mut library = Self::new(modules.collect(), passes.collect(), BTreeMap::new(), None);
+        // What ships was parsed by this crate's tests; a broken file is a finding, not a panic.
+        for (system, text) in systems {
+            match permutations::parse(&format!("{system}/permutations"), &text) {
+                Ok(entries) => library.list(&system, entries),
+                Err(error) => library.unlisted.push(listing_error(&error)),
+            }
+        }
+        library.complete();
+        library
+    }
+
+    /// A folder laid out like `wgsl/`: `<system>/<module>.wgsl`, `<system>/passes/<pass>.wgsl`,
+    /// `<system>/permutations`. Modules are ordered so that each follows what it imports.
+    ///
+    /// # Errors
+    /// An unreadable file, a malformed permutations file, a module without an import path, modules
+    /// that import each other, or a folder without shaders.
+    pub fn from_directory(directory: &Path) -> Result<Self, Error> {
+        let mut modules = Vec::new();
+        let mut passes = Vec::new();
+        let mut systems = BTreeMap::new();
+        for (system, folder) in folders(directory)? {
+            if system == "flat" || system.starts_with('.') {
+                continue;
+            }
+            for (module, path) in shaders(&folder)? {
+                let file = format!("{system}/{module}.wgsl");
+                let source = read(&path)?;
+                let path = import_path(&source).ok_or_else(|| Error::Shader {
+                    location: Location::line(&file, 1),
+                    message: format!("a module needs `#define_import_path airlight::{system}::{module}`"),
+                })?;
+                modules.push(ModuleSource { path, file, source, imports: Vec::new() });
+            }
+            for (pass, path) in shaders(&folder.join("passes"))? {
+                let file = format!("{system}/passes/{pass}.wgsl");
+                passes.push((format!("{system}/{pass}"), file, read(&path)?));
+            }
+            let listing = folder.join("permutations");
+            if listing.is_file() {
+                systems.insert(system, read(&listing)?);
+            }
+        }
+        if modules.is_empty() && passes.is_empty() {
+            return Err(Error::Empty(directory.to_owned()));
+        }
+        let mut library = Self::new(modules, passes, BTreeMap::new(), Some(directory.to_owned()));
+        library.modules = sorted(std::mem::take(&mut library.modules))?;
+        for (system, text) in systems {
+            let entries = permutations::parse(&format!("{system}/permutations"), &text)?;
+            library.list(&system, entries);
+        }
+        library.complete();
+        Ok(library)
+    }
+
+    /// From text in memory: `(file, source)` of modules in order and of passes, and permutations.
+    #[cfg(test)]
+    pub(crate) fn from_text(
+        modules: &[(&str, &str)],
+        passes: &[(&str, &str)],
+        systems: &[(&str, &str)],
+    ) -> Self {
+        let modules = modules.iter().map(|(file, source)| ModuleSource {
+            path: import_path(source).unwrap_or_default(),
+            file: (*file).to_owned(),
+            source: (*source).to_owned(),
+            imports: Vec::new(),
+        });
+        let passes = passes.iter().map(|(file, source)| {
+            let name = file.replace("/passes/", "/").replace(".wgsl", "");
+            (name, (*file).to_owned(), (*source).to_owned())
+        });
+        let mut library = Self::new(modules.collect(), passes.collect(), BTreeMap::new(), None);
+        for (system, text) in systems {
+            match permutations::parse(&format!("{system}/permutations"), text) {
+                Ok(entries) => library.list(system, entries),
+                Err(error) => library.unlisted.push(listing_error(&error)),
+            }
+        }
+        library.complete();
+        library
+    }
+
+    fn new(
+        mut modules: Vec<ModuleSource>,
+        passes: Vec<(String, String, String)>,
+        permutations: BTreeMap<String, Vec<Permutation>>,
+        root: Option<PathBuf>,
+    ) -> Self {
+        let paths: BTreeSet<String> = modules.iter().map(|module| module.path.clone()).collect();
+        for module in &mut modules {
+            module.imports = used(&module.source, &paths, &module.path);
+        }
+        let passes = passes
+            .into_iter()
+            .map(|(name, file, source)| {
+                let imports = used(&source, &paths, "");
+                PassSource { name, file, source, imports }
+            })
+            .collect();
+        Self { modules, passes, permutations, unlisted: Vec::new(), root }
+    }
+
+    fn list(&mut self, system: &str, entries: Vec<permutations::Entry>) {
+        for entry in entries {
+            let name = format!("{system}/{}", entry.pass);
+            if !self.passes.iter().any(|pass| pass.name == name) {
+                self.unlisted.push((
+                    Location::line(format!("{system}/permutations"), entry.line),
+                    format!("there is no {system}/passes/{}.wgsl", entry.pass),
+                ));
+            }
+            self.permutations.insert(name, entry.permutations);
+        }
+    }
+
+    /// Gives a pass that no file lists the permutation `default`, and remembers that as a finding.
+    fn complete(&mut self) {
+        for pass in &self.passes {
+            if self.permutations.contains_key(&pass.name) {
+                continue;
+            }
+            let (system, short) = pass.name.split_once('/').unwrap_or(("", &pass.name));
+            self.unlisted.push((
+                Location::file(format!("{system}/permutations")),
+                format!("pass `{short}` is not listed; it needs at least `+ default:`"),
+            ));
+            let default =
+                Permutation { name: "default".to_owned(), definitions: Default::default(), line: 0 };
+            self.permutations.insert(pass.name.clone(), vec![default]);
+        }
+    }
+
+    /// Every module, each after those that it imports.
+    pub fn modules(&self) -> &[ModuleSource] {
+        &self.modules
+    }
+
+    /// Every pass.
+    pub fn passes(&self) -> &[PassSource] {
+        &self.passes
+    }
+
+    /// The folder that the library was read from; none for the built-in one.
+    pub fn root(&self) -> Option<&Path> {
+        self.root.as_deref()
+    }
+
+    /// A pass by its name, `<system>/<pass>`.
+    ///
+    /// # Errors
+    /// An unknown pass; the error lists the known ones.
+    pub fn pass(&self, name: &str) -> Result<&PassSource, Error> {
+        self.passes.iter().find(|pass| pass.name == name).ok_or_else(|| Error::UnknownPass {
+            name: name.to_owned(),
+            known: self.passes.iter().map(|pass| pass.name.clone()).collect(),
+        })
+    }
+
+    /// A module by its import path.
+    ///
+    /// # Errors
+    /// An unknown module; the error lists the known ones.
+    pub fn module(&self, path: &str) -> Result<&ModuleSource, Error> {
+        self.modules.iter().find(|module| module.path == path).ok_or_else(|| Error::UnknownModule {
+            path: path.to_owned(),
+            known: self.modules.iter().map(|module| module.path.clone()).collect(),
+        })
+    }
+
+    /// The permutations of a pass; at least `default`.
+    ///
+    /// # Errors
+    /// An unknown pass.
+    pub fn permutations(&self, pass: &str) -> Result<&[Permutation], Error> {
+        let pass = self.pass(pass)?;
+        Ok(self.permutations.get(&pass.name).map(Vec::as_slice).unwrap_or_default())
+    }
+
+    /// One permutation of a pass.
+    ///
+    /// # Errors
+    /// An unknown pass or permutation; the error lists the known ones.
+    pub fn permutation(&self, pass: &str, name: &str) -> Result<&Permutation, Error> {
+        let permutations = self.permutations(pass)?;
+        permutations.iter().find(|permutation| permutation.name == name).ok_or_else(|| {
+            Error::UnknownPermutation {
+                pass: pass.to_owned(),
+                name: name.to_owned(),
+                known: permutations.iter().map(|permutation| permutation.name.clone()).collect(),
+            }
+        })
+    }
+
+    /// The modules that `imports` leads to, in the order of the library.
+    pub(crate) fn closure(&self, imports: &[String]) -> Vec<&ModuleSource> {
+        let mut wanted: BTreeSet<&str> = BTreeSet::new();
+        let mut open: Vec<&str> = imports.iter().map(String::as_str).collect();
+        while let Some(path) = open.pop() {
+            if wanted.insert(path)
+                && let Some(module) = self.modules.iter().find(|module| module.path == path)
+            {
+                open.extend(module.imports.iter().map(String::as_str));
+            }
+        }
+        self.modules.iter().filter(|module| wanted.contains(module.path.as_str())).collect()
+    }
+
+    /// The text of a file of the library.
+    pub(crate) fn text(&self, file: &str) -> Option<&str> {
+        let module = self.modules.iter().find(|module| module.file == file);
+        let pass = self.passes.iter().find(|pass| pass.file == file);
+        module.map(|m| m.source.as_str()).or_else(|| pass.map(|p| p.source.as_str()))
+    }
+}
+
+/// The module that an imported path belongs to: itself, or all but its last part.
+pub(crate) fn resolve<'a>(path: &'a str, known: impl Fn(&str) -> bool) -> Option<&'a str> {
+    if known(path) {
+        return Some(path);
+    }
+    path.rsplit_once("::").map(|(module, _)| module).filter(|module| known(module))
+}
+
+/// Modules that a source imports or names in full, but for itself.
+fn used(source: &str, paths: &BTreeSet<String>, own: &str) -> Vec<String> {
+    let known = |path: &str| paths.contains(path);
+    let mut modules: BTreeSet<String> = imports::declared(source)
+        .iter()
+        .filter_map(|import| resolve(&import.path, known).map(str::to_owned))
+        .collect();
+    let (_, named, _) = naga_oil::compose::get_preprocessor_data(source);
+    modules.extend(named.into_iter().map(|import| import.import).filter(|path| known(path)));
+    modules.remove(own);
+    modules.into_iter().collect()
+}
+
+/// The path in `#define_import_path`.
+fn import_path(source: &str) -> Option<String> {
+    let text = crate::scan::without_comments(source);
+    text.lines()
+        .find_map(|line| line.trim().strip_prefix("#define_import_path"))
+        .and_then(|rest| rest.split_whitespace().next())
+        .map(str::to_owned)
+}
+
+/// Depth-first by imports; otherwise in the order given.
+fn sorted(modules: Vec<ModuleSource>) -> Result<Vec<ModuleSource>, Error> {
+    fn visit(
+        index: usize,
+        modules: &[ModuleSource],
+        trail: &mut Vec<usize>,
+        order: &mut Vec<usize>,
+    ) -> Result<(), Error> {
+        if order.contains(&index) {
+            return Ok(());
+        }
+        if let Some(start) = trail.iter().position(|&earlier| earlier == index) {
+            let cycle = trail[start..].iter().chain([&index]);
+            return Err(Error::Cycle {
+                location: Location::file(&modules[index].file),
+                cycle: cycle.map(|&at| modules[at].path.clone()).collect(),
+            });
+        }
+        trail.push(index);
+        for import in &modules[index].imports {
+            if let Some(next) = modules.iter().position(|module| module.path == *import) {
+                visit(next, modules, trail, order)?;
+            }
+        }
+        trail.pop();
+        order.push(index);
+        Ok(())
+    }
+    let mut order = Vec::with_capacity(modules.len());
+    for index in 0..modules.len() {
+        visit(index, &modules, &mut Vec::new(), &mut order)?;
+    }
+    let mut slots: Vec<Option<ModuleSource>> = modules.into_iter().map(Some).collect();
+    Ok(order.into_iter().filter_map(|index| slots[index].take()).collect())
+}
+
+fn listing_error(error: &Error) -> (Location, String) {
+    (error.location().cloned().unwrap_or_else(|| Location::file("permutations")), error.message())
+}
+
+fn read(path: &Path) -> Result<String, Error> {
+    fs::read_to_string(path).map_err(|source| Error::Read { path: path.to_owned(), source })
+}
+
+/// Names and paths in a folder, sorted, so that the result does not depend on the file system.
+fn entries(directory: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
+    let failed = |source| Error::Read { path: directory.to_owned(), source };
+    let mut entries = Vec::new();
+    for entry in fs::read_dir(directory).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if let Some(name) = path.file_name().and_then(|name| name.to_str()) {
+            entries.push((name.to_owned(), path));
+        }
+    }
+    entries.sort();
+    Ok(entries)
+}
+
+fn folders(directory: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
+    let entries = entries(directory)?;
+    Ok(entries.into_iter().filter(|(_, path)| path.is_dir()).collect())
+}
+
+/// Stems and paths of the `.wgsl` files in a folder; none where there is no folder.
+fn shaders(directory: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
+    if !directory.is_dir() {
+        return Ok(Vec::new());
+    }
+    let entries = entries(directory)?.into_iter();
+    Ok(entries.filter_map(|(name, path)| Some((name.strip_suffix(".wgsl")?.to_owned(), path))).collect())
+}

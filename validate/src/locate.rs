@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! From naga_oil's errors to the module's own file, line and column.
+//!
+//! naga_oil keeps lines while it preprocesses, but shifts columns (it replaces names) and prepends
+//! a header; a span carries the number of its module in the bits above [`SPAN_BITS`].
+
+use crate::{Error, Library, Location, names::undecorate};
+use naga_oil::compose::{Composer, ComposerError, ComposerErrorInner, ErrSource};
+
+/// Bits of a span that are a position; naga_oil's `SPAN_SHIFT`.
+const SPAN_BITS: u32 = 21;
+
+/// The located form of a composer's error; `file` and `source` are what was being composed.
+pub(crate) fn locate(
+    error: &ComposerError,
+    composer: &Composer,
+    library: &Library,
+    file: &str,
+    source: &str,
+) -> Error {
+    let (file, preprocessed) = match &error.source {
+        ErrSource::Module { name, .. } => match composer.module_sets.get(name) {
+            Some(set) => (set.file_path.clone(), error.source.source(composer).into_owned()),
+            None => (file.to_owned(), String::new()),
+        },
+        ErrSource::Constructing { path, source, .. } => (path.clone(), source.clone()),
+    };
+    let original = library.text(&file).unwrap_or(source).replace("\r\n", "\n");
+    let (message, position) = describe(&error.inner, error.source.offset());
+    let (line, column) = match position {
+        Position::None => (None, None),
+        Position::Line(line) => (Some(line), None),
+        Position::Byte(byte) => place(&original, &preprocessed, byte),
+        Position::Directive(byte, word) => (directive(&original, byte, word), None),
+        Position::Text(text) => match original.lines().position(|line| line.contains(&text)) {
+            Some(index) => (Some(index as u32 + 1), None),
+            None => (None, None),
+        },
+    };
+    Error::Shader { location: Location { file, line, column }, message: undecorate(&message) }
+}
+
+enum Position<'a> {
+    None,
+    /// A line, from 1.
+    Line(u32),
+    /// A byte of the preprocessed source.
+    Byte(usize),
+    /// Near a byte of the source: a directive, with a word in it.
+    Directive(usize, &'a str),
+    /// The first line with this text.
+    Text(String),
+}
+
+fn describe(error: &ComposerErrorInner, offset: usize) -> (String, Position<'_>) {
+    use ComposerErrorInner as E;
+    let message = error.to_string();
+    match error {
+        E::WgslParseError(parse) => {
+            let mut message = parse.message().to_owned();
+            for note in parse.notes() {
+                message = format!("{message}; {note}");
+            }
+            let spans = parse.labels().map(|(span, _)| span);
+            (message, first_position(spans, offset))
+        }
+        E::HeaderValidationError(invalid) | E::ShaderValidationError(invalid) => {
+            (chain(invalid.as_inner()), validation_position(invalid, offset))
+        }
+        E::InvalidIdentifier { original, at } => {
+            let message = format!(
+                "`{original}` would be renamed when composed: a name of a module must not end in \
+                 a digit or `_`, hold `__`, or be a reserved word"
+            );
+            (message, first_position([*at], offset))
+        }
+        E::ImportNotFound(path, _) => {
+            let short = path.rsplit("::").next().unwrap_or(path);
+            (format!("import of `{path}`, which is no module"), Position::Text(short.to_owned()))
+        }
+        E::ImportParseError(_, at) => (message, Position::Directive(*at, "import")),
+        E::UnknownShaderDef { pos, shader_def_name }
+        | E::InvalidShaderDefComparisonValue { pos, shader_def_name, .. } => {
+            (message, Position::Directive(*pos, shader_def_name))
+        }
+        E::UnknownShaderDefOperator { pos, .. } => (message, Position::Directive(*pos, "if")),
+        E::InvalidShaderDefDefinitionValue { pos, .. } | E::DefineInModule(pos) => {
+            (message, Position::Directive(*pos, "define"))
+        }
+        E::TooManyEndIfs(pos) => (message, Position::Directive(*pos, "endif")),
+        E::ElseWithoutCondition(pos) => (message, Position::Directive(*pos, "else")),
+        E::NotEnoughEndIfs(pos) => (message, Position::Byte(pos.saturating_sub(1))),
+        E::OverrideNotVirtual { name, .. } => (message, Position::Text(format!("::{name}"))),
+        E::DecorationInSource(range) => (message, Position::Byte(range.start)),
+        E::InvalidWgslDirective { position, .. } => {
+            (message, Position::Line(u32::try_from(*position).unwrap_or(0)))
+        }
+        E::NoModuleName => (message, Position::Line(1)),
+        _ => (message, Position::None),
+    }
+}
+
+/// The error and everything that it was caused by, in one line.
+pub(crate) fn chain(error: &dyn std::error::Error) -> String {
+    let mut parts = vec![error.to_string()];
+    let mut next = error.source();
+    while let Some(error) = next {
+        let text = error.to_string();
+        if parts.last() != Some(&text) {
+            parts.push(text);
+        }
+        next = error.source();
+    }
+    parts.join(": ")
+}
+
+fn first_position(spans: impl IntoIterator<Item = naga::Span>, offset: usize) -> Position<'static> {
+    let starts = spans.into_iter().filter_map(|span| Some(span.to_range()?.start));
+    starts
+        .filter_map(|start| (start & ((1 << SPAN_BITS) - 1)).checked_sub(offset))
+        .map(Position::Byte)
+        .next()
+        .unwrap_or(Position::None)
+}
+
+/// naga reports the narrowest span first; naga_oil attributes the error by the last, so only spans
+/// of that module count.
+fn validation_position(
+    error: &naga::WithSpan<naga::valid::ValidationError>,
+    offset: usize,
+) -> Position<'static> {
+    let spans: Vec<naga::Span> = error.spans().map(|(span, _)| *span).collect();
+    let module = |span: &naga::Span| span.to_range().map(|range| range.start >> SPAN_BITS);
+    let Some(last) = spans.last().and_then(module) else {
+        return Position::None;
+    };
+    first_position(spans.into_iter().filter(|span| module(span) == Some(last)), offset)
+}
+
+/// Line and column in the original of a byte in the preprocessed text.
+fn place(original: &str, preprocessed: &str, byte: usize) -> (Option<u32>, Option<u32>) {
+    let text = if preprocessed.is_empty() { original } else { preprocessed };
+    let mut byte = byte.min(text.len());
+    while !text.is_char_boundary(byte) {
+        byte -= 1;
+    }
+    let before = &text[..byte];
+    let line = before.matches('\n').count();
+    let start = before.rfind('\n').map_or(0, |at| at + 1);
+    let (before, after) = (&text[start..byte], text[byte..].lines().next().unwrap_or_default());
+    let own = original.lines().nth(line);
+    // Names before the place may have grown; then the rest of the line tells the column.
+    let column = own.and_then(|own| {
+        if own.starts_with(before) {
+            Some(before.chars().count())
+        } else {
+            let head = own.strip_suffix(after.trim_end())?;
+            Some(head.chars().count())
+        }
+    });
+    (Some(line as u32 + 1), column.map(|column| column as u32 + 1))
+}
+
+/// The line of the directive nearest to a byte that holds a word: positions that naga_oil gives for
+/// directives shift by what was substituted above them.
+fn directive(original: &str, byte: usize, word: &str) -> Option<u32> {
+    let mut start = 0_usize;
+    let mut best: Option<(usize, u32)> = None;
+    for (number, line) in (1..).zip(original.split('\n')) {
+        if line.trim_start().starts_with('#') && line.contains(word) {
+            let distance = start.abs_diff(byte);
+            if best.is_none_or(|(nearest, _)| distance < nearest) {
+                best = Some((distance, number));
+            }
+        }
+        start += line.len() + 1;
+    }
+    best.map(|(_, number)| number)
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::core::camera
+// summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
+// source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
+// note: right-handed world, y up, metres; clip depth 0..1. Forward and reversed depth differ only in
+// note: `near_depth` and `far_depth`; an infinite far plane unprojects to a point with w = 0.
+
+/// Perspective projection: all view rays leave the eye.
+const PERSPECTIVE: u32 = 0u;
+/// Orthographic projection: view rays are parallel and leave the near plane.
+const ORTHOGRAPHIC: u32 = 1u;
+
+/// A camera, as an engine hands it over. 160 bytes.
+struct Camera {
+    /// View-projection matrix, world to clip.
+    clip_from_world: mat4x4<f32>,
+    /// Its inverse, clip to world.
+    world_from_clip: mat4x4<f32>,
+    /// Position of the eye in the world, metres; unused by an orthographic camera.
+    eye: vec3<f32>,
+    /// Clip depth of the near plane: 0 forward, 1 reversed.
+    near_depth: f32,
+    /// Width and height of the picture in pixels.
+    viewport: vec2<f32>,
+    /// Clip depth of the far plane: 1 forward, 0 reversed.
+    far_depth: f32,
+    /// PERSPECTIVE or ORTHOGRAPHIC.
+    projection: u32,
+}
+
+/// A view ray: world-space origin in metres, unit direction.
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+}
+
+/// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
+fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+/// The view ray through `ndc`.
+fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
+    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
+    if camera.projection == ORTHOGRAPHIC {
+        let near = camera.world_from_clip * vec4<f32>(ndc, camera.near_depth, 1.0);
+        return Ray(near.xyz / near.w, normalize(far.xyz - near.xyz));
+    }
+    // With w = 0 (infinite far plane) far.xyz is the direction itself.
+    return Ray(camera.eye, normalize(far.xyz - camera.eye * far.w));
+}
+
+/// Distance in metres along `ray`, the view ray through `ndc`, of the surface with the depth-buffer
+/// value `depth`; at most `limit`, which also stands for points at infinity.
+fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, limit: f32) -> f32 {
+    let point = camera.world_from_clip * vec4<f32>(ndc, depth, 1.0);
+    let along = dot(point.xyz - ray.origin * point.w, ray.direction);
+    // along / w, without dividing by a w that is zero or has rounded below it.
+    if along >= limit * point.w {
+        return limit;
+    }
+    return max(along / point.w, 0.0);
+}
+
+/// Row `index` of a matrix, as a vector.
+fn matrix_row(matrix: mat4x4<f32>, index: u32) -> vec4<f32> {
+    return vec4<f32>(matrix[0][index], matrix[1][index], matrix[2][index], matrix[3][index]);
+}
+
+/// Unit inward normal of a side plane of a perspective frustum: 0 left, 1 right, 2 bottom, 3 top.
+fn side_normal(camera: Camera, side: u32) -> vec3<f32> {
+    let axis = matrix_row(camera.clip_from_world, side >> 1u).xyz;
+    let w = matrix_row(camera.clip_from_world, 3u).xyz;
+    return normalize(w + select(axis, -axis, (side & 1u) == 1u));
+}
+
+/// Unit direction in which a perspective camera looks, at right angles to the picture plane.
+fn forward_direction(camera: Camera) -> vec3<f32> {
+    return normalize(matrix_row(camera.clip_from_world, 3u).xyz);
+}
+
+/// Distance of the far plane along `forward_direction` in metres, at most `limit`.
+fn far_plane_distance(camera: Camera, limit: f32) -> f32 {
+    let forward = forward_direction(camera);
+    let point = camera.world_from_clip * vec4<f32>(0.0, 0.0, camera.far_depth, 1.0);
+    let along = dot(point.xyz - camera.eye * point.w, forward);
+    if along >= limit * point.w {
+        return limit;
+    }
+    return max(along / point.w, 0.0);
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::core::prefix_sum
+// summary: Running weighted mean along a row: the prefix sum that filters basis textures.
+// source: thesis 4.3.3, Listings 4.1 and 4.2.
+// note: Listing 4.1 fetches texel x inside a loop over i: it must be i. Listing 4.2 writes the product of
+// note: transmittances from j = 0: it starts at 1. Constant factors of the weights cancel, so the first is 1.
+// note: The mean over the texels 0 .. i is stored at texel i (an inclusive prefix).
+
+/// Weights of one row: each is `ratio` times the one before it.
+struct RowWeights {
+    /// Weight of the current texel.
+    weight: f32,
+    /// Sum of the weights up to and with it.
+    total: f32,
+    /// From a texel to the next, 0..1.
+    ratio: f32,
+}
+
+/// The weights at the first texel. `optical_step`: optical depth of one texel; zero gives the plain mean.
+fn row_weights(optical_step: f32) -> RowWeights {
+    return RowWeights(1.0, 1.0, exp(-max(optical_step, 0.0)));
+}
+
+/// The weights at the next texel.
+fn row_weights_next(current: RowWeights) -> RowWeights {
+    let weight = current.weight * current.ratio;
+    return RowWeights(weight, current.total + weight, current.ratio);
+}
+
+/// `mean` with `value` taken in at the current texel's weight.
+fn running_mean(mean: vec4<f32>, value: vec4<f32>, weights: RowWeights) -> vec4<f32> {
+    return mean + (value - mean) * (weights.weight / weights.total);
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: In-scattered radiance of every pixel from the filtered bases: a dot product, whatever the scene.
+// source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
+// note: Texel i holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
+// note: Around the light's place in the picture a slice is only a few texels long and the light would bleed
+// note: through blockers: EPIPOLE_MARCH marches the standard shadow map there, blended in without a seam.
+// definition BASES: number M of bases, as in the filter.
+// definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
+// definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
+// binding camera: the camera, perspective.
+// binding light: the directional light and its shadow map's clip space.
+// binding medium: the medium.
+// binding frame: the frame of the slices.
+// binding slices: their bounds, rgba32float, one texel a slice.
+// binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
+// binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH.
+// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v.
+// binding scattered: out, rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
+
+#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
+#import airlight::core::finite::finite_or
+#import airlight::core::fourier_basis::{
+    series_at, series_next, coefficients, coefficients_lanczos, basis_from_stored
+}
+#import airlight::core::light::Light
+#import airlight::scattering::march::march_shadow_map
+#import airlight::scattering::rectify::{
+    Frame, epipolar_ray, neighbour_rows, slice_from_texel, slice_mix, depth_from_ray
+}
+#import airlight::scattering::single_scatter::{Medium, in_scattered}
+
+@group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
+@group(#{GROUP}) @binding(1) var<uniform> light: Light;
+@group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
+@group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
+@group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
+@group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
+#ifdef EPIPOLE_MARCH
+@group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
+#endif
+@group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
+@group(#{GROUP}) @binding(8) var bases_sampler: sampler;
+@group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
+
+const LAYERS: u32 = u32(#{BASES}) / 4u;
+
+/// Rays that cover fewer texels are marched.
+const EPIPOLE_TEXELS: f32 = 8.0;
+/// Steps of that march.
+const EPIPOLE_STEPS: u32 = 96u;
+
+@compute @workgroup_size(16, 8)
+fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= textureDimensions(scattered)) {
+        return;
+    }
+    let ndc = ndc_from_pixel(camera, vec2<f32>(id.xy) + 0.5);
+    let ray = view_ray(camera, ndc);
+    let surface = clamp(finite_or(textureLoad(depth, id.xy, 0).x, camera.far_depth), 0.0, 1.0);
+    let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+
+    let epipolar = epipolar_ray(frame, ray.direction);
+    let rows = neighbour_rows(frame, epipolar.row);
+    let slice = slice_mix(
+        slice_from_texel(textureLoad(slices, vec2<u32>(rows.x, 0u), 0)),
+        slice_from_texel(textureLoad(slices, vec2<u32>(rows.y, 0u), 0)),
+        fract(epipolar.row)
+    );
+    let size = vec2<f32>(textureDimensions(bases).xy);
+    let texels = clamp(size.x * distance * epipolar.sine / slice.radius_max, 0.0, size.x);
+    let at = vec2<f32>(max(texels - 0.5, 0.5), epipolar.row + 0.5) / size;
+
+    let depth_of_ray = depth_from_ray(slice, epipolar);
+    var series = series_at(depth_of_ray, 0u);
+#ifdef LANCZOS
+    var window = series_at(1.0 / f32(4u * LAYERS), 0u);
+#endif
+    var visibility = 0.5;
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        let filtered = basis_from_stored(textureSampleLevel(bases, bases_sampler, at, layer, 0.0));
+#ifdef LANCZOS
+        visibility += dot(coefficients_lanczos(series, window, layer, 4u * LAYERS), filtered);
+        window = series_next(window);
+#else
+        visibility += dot(coefficients(series, layer), filtered);
+#endif
+        series = series_next(series);
+    }
+    visibility = clamp(visibility, 0.0, 1.0);
+
+#ifdef EPIPOLE_MARCH
+    let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
+    let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
+    let marched = march_shadow_map(
+        shadow_map, light, ray.origin, ray.direction, distance, medium.extinction, steps, 0.5
+    );
+    visibility = mix(visibility, marched, near_epipole);
+#endif
+
+    let cosine = dot(ray.direction, light.direction);
+    let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
+    textureStore(scattered, id.xy, vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility));
+}

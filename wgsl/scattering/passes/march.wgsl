@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: In-scattered radiance of every pixel by marching: along rows of the rectified map, or through the standard shadow map.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+// note: Rows: one step a texel of the nearest row, one texture load a step. With AVERAGE all steps weigh the same.
+// definition AVERAGE: average visibility instead of visibility weighted by transmittance.
+// definition SHADOW_MAP: march the standard shadow map by `steps` equal steps a ray.
+// binding camera: the camera, perspective (rows) or any (shadow map).
+// binding light: the directional light.
+// binding medium: the medium.
+// binding frame: the frame of the slices; rows only.
+// binding slices: their bounds, rgba32float; rows only.
+// binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
+// binding rectified: the rectified map; rows only.
+// binding shadow_map: depth of the standard shadow map; with SHADOW_MAP only.
+// binding parameters: number of steps; with SHADOW_MAP only.
+// binding scattered: out, rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
+
+#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
+#import airlight::core::finite::finite_or
+#import airlight::core::light::Light
+#import airlight::scattering::march::{march_row, march_shadow_map}
+#import airlight::scattering::rectify::{
+    Frame, epipolar_ray, neighbour_rows, slice_from_texel, depth_from_ray
+}
+#import airlight::scattering::single_scatter::{Medium, in_scattered}
+
+struct MarchParameters {
+    /// Steps a ray, at least 1.
+    steps: u32,
+    /// Where in each step the sample lies, 0..1.
+    offset: f32,
+    reserved_a: u32,
+    reserved_b: u32,
+}
+
+@group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
+@group(#{GROUP}) @binding(1) var<uniform> light: Light;
+@group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
+#ifdef SHADOW_MAP
+@group(#{GROUP}) @binding(7) var shadow_map: texture_2d<f32>;
+@group(#{GROUP}) @binding(8) var<uniform> parameters: MarchParameters;
+#else
+@group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
+@group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
+@group(#{GROUP}) @binding(6) var rectified: texture_2d<f32>;
+#endif
+@group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
+@group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(16, 8)
+fn march(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= textureDimensions(scattered)) {
+        return;
+    }
+    let ndc = ndc_from_pixel(camera, vec2<f32>(id.xy) + 0.5);
+    let ray = view_ray(camera, ndc);
+    let surface = clamp(finite_or(textureLoad(depth, id.xy, 0).x, camera.far_depth), 0.0, 1.0);
+    let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+#ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
+
+#ifdef SHADOW_MAP
+    let visibility = march_shadow_map(
+        shadow_map, light, ray.origin, ray.direction, distance, extinction,
+        max(parameters.steps, 1u), parameters.offset
+    );
+#else
+    let epipolar = epipolar_ray(frame, ray.direction);
+    let rows = neighbour_rows(frame, epipolar.row);
+    let row = select(rows.x, rows.y, fract(epipolar.row) >= 0.5);
+    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
+    let width = f32(textureDimensions(rectified).x);
+    let radius = distance * epipolar.sine;
+    // A texel of a ray that barely leaves the light's direction is longer than any ray: the clamp keeps it finite.
+    let optical_step = extinction * slice.radius_max / (width * max(epipolar.sine, 1e-6));
+    let visibility = march_row(
+        rectified, row, depth_from_ray(slice, epipolar),
+        width * radius / slice.radius_max, optical_step
+    );
+#endif
+    let cosine = dot(ray.direction, light.direction);
+    let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
+    textureStore(scattered, id.xy, vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility));
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::scattering::rectify
+// summary: Epipolar coordinates around a directional light: rows are slices, columns radii, depth the angle to the light.
+// source: thesis 4.4.1, after Baran et al., "A hierarchical volumetric shadow algorithm" (2010); Eq. 4.12.
+// note: The thesis measures "the angle between view ray and light direction"; with the direction of travel the
+// note: visibility test would be reversed. The angle here is taken from the direction TOWARDS the light, so that
+// note: it grows along light rays: lit if and only if theta_ray <= theta_stored.
+// note: x is the radius, at right angles to the light. The distance along the reference ray of the thesis is
+// note: the same up to a factor per slice: the texel is the same.
+// note: The whole convention, with the range of rows, is docs/src/rectification.md.
+
+#import airlight::core::camera::{Camera, view_ray, side_normal, forward_direction, far_plane_distance}
+#import airlight::core::fourier_basis::{GUARD, guarded}
+
+const PI: f32 = 3.141592653589793;
+
+/// Closer than this to the border of the picture, the light (or its antipode) counts as inside.
+const INSIDE_MARGIN: f32 = 1e-3;
+/// Slices are at least this wide in theta, radians.
+const LEAST_WIDTH: f32 = 1e-3;
+/// Planes whose normal is this nearly at right angles to a slice bound none of its rays.
+const SAME_PLANE: f32 = 1e-4;
+/// The least cosine k of Eq. 4.10 that takes part in the choice of the reference ray.
+const LEAST_REFERENCE: f32 = 0.1;
+
+/// Axes around the light and the range of the slices. 64 bytes.
+struct Frame {
+    /// Unit vector TOWARDS the light.
+    light: vec3<f32>,
+    /// Azimuth of row 0, radians.
+    azimuth_min: f32,
+    /// Unit vector of azimuth 0.
+    axis_a: vec3<f32>,
+    /// Rows per radian of azimuth.
+    rows_per_radian: f32,
+    /// Unit vector of azimuth pi / 2.
+    axis_b: vec3<f32>,
+    /// Number of rows.
+    rows: f32,
+    /// Position of the eye, where all slices meet.
+    eye: vec3<f32>,
+    /// 1 where the rows go round the full circle and wrap, 0 elsewhere.
+    wraps: f32,
+}
+
+/// Bounds of one slice.
+struct Slice {
+    /// Least angle to the light of its view rays, radians.
+    angle_min: f32,
+    /// Greatest angle to the light of its view rays, radians.
+    angle_max: f32,
+    /// Radius in metres at the right end of its row.
+    radius_max: f32,
+    /// k of the reference ray: sine of its angle to the light (Eq. 4.12).
+    reference: f32,
+}
+
+/// A view ray in epipolar coordinates.
+struct EpipolarRay {
+    /// Angle to the light, 0..pi, constant along the ray.
+    angle: f32,
+    /// Its sine: metres of radius per metre of distance.
+    sine: f32,
+    /// Row, fractional; row j is at the value j.
+    row: f32,
+}
+
+/// The frame of a perspective camera for a light. `light`: unit vector towards the light; `rows`: height of the map, at least 1.
+fn epipolar_frame(camera: Camera, light: vec3<f32>, rows: u32) -> Frame {
+    let forward = forward_direction(camera);
+    let right = view_ray(camera, vec2<f32>(1.0, 0.0)).direction - view_ray(camera, vec2<f32>(-1.0, 0.0)).direction;
+    var axis = forward - light * dot(forward, light);
+    if length(axis) < 1e-3 {
+        let unit = normalize(right);
+        axis = unit - light * dot(unit, light);
+    }
+    let axis_a = normalize(axis);
+    let axis_b = cross(light, axis_a);
+
+    var nearest = 1.0;
+    var farthest = -1.0;
+    for (var side = 0u; side < 4u; side++) {
+        let towards = dot(side_normal(camera, side), light);
+        nearest = min(nearest, towards);
+        farthest = max(farthest, towards);
+    }
+    if nearest > -INSIDE_MARGIN || farthest < INSIDE_MARGIN {
+        return Frame(light, -PI, axis_a, f32(rows) / (2.0 * PI), axis_b, f32(rows), camera.eye, 1.0);
+    }
+
+    var azimuth_min = PI;
+    var azimuth_max = -PI;
+    for (var corner = 0u; corner < 4u; corner++) {
+        let ndc = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
+        let direction = view_ray(camera, ndc).direction;
+        let azimuth = atan2(dot(direction, axis_b), dot(direction, axis_a));
+        azimuth_min = min(azimuth_min, azimuth);
+        azimuth_max = max(azimuth_max, azimuth);
+    }
+    let rows_per_radian = (f32(rows) - 1.0) / max(azimuth_max - azimuth_min, 1e-6);
+    return Frame(light, azimuth_min, axis_a, rows_per_radian, axis_b, f32(rows), camera.eye, 0.0);
+}
+
+/// Azimuth of the middle of `row`, radians.
+fn row_azimuth(frame: Frame, row: f32) -> f32 {
+    return frame.azimuth_min + row / max(frame.rows_per_radian, 1e-6);
+}
+
+/// Unit vector at right angles to the light in the half-plane of `azimuth`.
+fn azimuth_direction(frame: Frame, azimuth: f32) -> vec3<f32> {
+    return cos(azimuth) * frame.axis_a + sin(azimuth) * frame.axis_b;
+}
+
+/// Distance at which the ray at `angle` in a half-plane leaves the far plane, at most `limit`.
+/// `along_light`, `along_radius`: the camera's forward direction times the light and times the half-plane's direction.
+fn far_radius(far: f32, limit: f32, along_light: f32, along_radius: f32, angle: f32) -> f32 {
+    let sine = sin(angle);
+    let towards = along_light * cos(angle) + along_radius * sine;
+    if far * sine >= limit * towards {
+        return limit;
+    }
+    return far * sine / towards;
+}
+
+/// Bounds of the slice at `azimuth`: view rays inside the frustum, no longer than `distance_limit` metres.
+fn slice_bounds(camera: Camera, frame: Frame, azimuth: f32, distance_limit: f32) -> Slice {
+    let radial = azimuth_direction(frame, azimuth);
+    var angle_min = 0.0;
+    var angle_max = PI;
+    for (var side = 0u; side < 4u; side++) {
+        let normal = side_normal(camera, side);
+        let a = dot(normal, frame.light);
+        let b = dot(normal, radial);
+        // A plane that holds the light bounds no angle; what is left of it is rounding.
+        if length(vec2<f32>(a, b)) < SAME_PLANE {
+            continue;
+        }
+        if a > 0.0 {
+            angle_max = min(angle_max, atan2(a, -b));
+        } else if a < 0.0 {
+            angle_min = max(angle_min, atan2(-a, b));
+        }
+    }
+    if angle_max - angle_min < LEAST_WIDTH {
+        let middle = clamp(0.5 * (angle_min + angle_max), 0.5 * LEAST_WIDTH, PI - 0.5 * LEAST_WIDTH);
+        angle_min = middle - 0.5 * LEAST_WIDTH;
+        angle_max = middle + 0.5 * LEAST_WIDTH;
+    }
+
+    let right_angle = 0.5 * PI;
+    let widest = clamp(right_angle, angle_min, angle_max);
+    let sine_max = max(sin(widest), 1e-4);
+    let sine_min = min(sin(angle_min), sin(angle_max));
+    let limit = distance_limit * sine_max;
+
+    // On a half-plane the far plane's radius is monotone in the angle: its greatest value is at a bound.
+    let forward = forward_direction(camera);
+    let along_light = dot(forward, frame.light);
+    let along_radius = dot(forward, radial);
+    let far = far_plane_distance(camera, distance_limit);
+    let radius = max(
+        far_radius(far, limit, along_light, along_radius, angle_min),
+        far_radius(far, limit, along_light, along_radius, angle_max)
+    );
+    let reference = sqrt(max(sine_min, LEAST_REFERENCE) * max(sine_max, LEAST_REFERENCE));
+    return Slice(angle_min, angle_max, clamp(radius, 1e-6 * distance_limit, limit), reference);
+}
+
+/// `mix` of two neighbouring slices.
+fn slice_mix(a: Slice, b: Slice, fraction: f32) -> Slice {
+    let mixed = mix(
+        vec4<f32>(a.angle_min, a.angle_max, a.radius_max, a.reference),
+        vec4<f32>(b.angle_min, b.angle_max, b.radius_max, b.reference),
+        fraction
+    );
+    return Slice(mixed.x, mixed.y, mixed.z, mixed.w);
+}
+
+/// A slice as one texel of an rgba32float texture.
+fn slice_texel(slice: Slice) -> vec4<f32> {
+    return vec4<f32>(slice.angle_min, slice.angle_max, slice.radius_max, slice.reference);
+}
+
+/// What `slice_texel` did, undone.
+fn slice_from_texel(texel: vec4<f32>) -> Slice {
+    return Slice(texel.x, texel.y, texel.z, texel.w);
+}
+
+/// Epipolar coordinates of the view ray with the unit `direction`.
+fn epipolar_ray(frame: Frame, direction: vec3<f32>) -> EpipolarRay {
+    let height = dot(direction, frame.light);
+    let a = dot(direction, frame.axis_a);
+    let b = dot(direction, frame.axis_b);
+    let sine = length(vec2<f32>(a, b));
+    // At the light itself the azimuth is free; atan2(0, 0) is not.
+    let azimuth = select(atan2(b, a), 0.0, sine < 1e-12);
+    let row = (azimuth - frame.azimuth_min) * frame.rows_per_radian;
+    // A wrapping row may lie at `rows` itself: the sampler repeats.
+    let last = select(frame.rows - 1.0, frame.rows, frame.wraps > 0.0);
+    return EpipolarRay(atan2(sine, height), sine, clamp(row, 0.0, last));
+}
+
+/// The two rows around a fractional `row`: indices, always inside the map.
+fn neighbour_rows(frame: Frame, row: f32) -> vec2<u32> {
+    let rows = u32(frame.rows);
+    let low = min(u32(max(row, 0.0)), rows);
+    if frame.wraps > 0.0 {
+        return vec2<u32>(low % rows, (low + 1u) % rows);
+    }
+    return min(vec2<u32>(low, low + 1u), vec2<u32>(rows - 1u));
+}
+
+/// Depth 0..1 in the rectified map of an angle to the light: view rays of the slice lie in
+/// GUARD .. 1 - GUARD, blockers beyond its bounds are clamped into the guard.
+fn depth_from_angle(slice: Slice, angle: f32) -> f32 {
+    return guarded((angle - slice.angle_min) / max(slice.angle_max - slice.angle_min, 0.1 * LEAST_WIDTH));
+}
+
+/// Depth in the rectified map of a view ray: kept out of the guard, into which a ray between two
+/// slices with different bounds may fall.
+fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
+    return clamp(depth_from_angle(slice, ray.angle), GUARD, 1.0 - GUARD);
+}
+
+/// Point on the light ray at `azimuth` and `radius` where it passes the height of the eye.
+fn light_ray_point(frame: Frame, azimuth: f32, radius: f32) -> vec3<f32> {
+    return frame.eye + radius * azimuth_direction(frame, azimuth);
+}
+
+/// Depth 0..1 in the rectified map of a blocker at `point` on the light ray with `radius`.
+fn depth_from_blocker(frame: Frame, slice: Slice, radius: f32, point: vec3<f32>) -> f32 {
+    return depth_from_angle(slice, atan2(radius, dot(point - frame.eye, frame.light)));
+}
