@@ -5,8 +5,12 @@
 //! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
 //! of plain functions that record passes into an encoder: [`scattering`].
 
+#[cfg(feature = "command")]
+pub mod command;
 pub mod core;
 pub mod data;
+#[cfg(feature = "command")]
+pub mod formats;
 mod gpu;
 pub mod layout;
 mod pass;
@@ -15,9 +19,11 @@ pub mod scattering;
 #[cfg(feature = "command")]
 pub mod scenes;
 mod shaders;
+mod stage;
 
 pub use airlight_validate as validate;
 pub use gpu::{Gpu, GpuError};
 pub use pass::{Bound, Pass, PassError, RenderStages, Resource};
 pub use resource::{Buffer, Sampler, Texture};
 pub use shaders::Shaders;
+pub use stage::{Setting, Stage, StageError};

@@ -417,6 +417,13 @@ impl Prefiltered {
 pub enum Along<'a> {
     /// Rows of a rectified map, one step a texel.
     Rows(&'a Rectification),
+    /// Rows of a rectified map by equal steps, average visibility: the fastest march there is.
+    RowSteps {
+        /// The map.
+        map: &'a Rectification,
+        /// Steps a ray, at least 1.
+        steps: u32,
+    },
     /// The standard shadow map, by equal steps.
     ShadowMap {
         /// Steps a ray, at least 1.
@@ -447,9 +454,16 @@ impl March {
         check_size(gpu, "a picture", viewport)?;
         let mut definitions = Definitions::new();
         let mut steps = 0;
-        if let Along::ShadowMap { steps: asked } = along {
-            definitions = definitions.flag("SHADOW_MAP");
-            steps = *asked;
+        match along {
+            Along::Rows(_) => {}
+            Along::RowSteps { steps: asked, .. } => {
+                definitions = definitions.flag("STEPS");
+                steps = *asked;
+            }
+            Along::ShadowMap { steps: asked } => {
+                definitions = definitions.flag("SHADOW_MAP");
+                steps = *asked;
+            }
         }
         if weighting == Weighting::Average {
             definitions = definitions.flag("AVERAGE");
@@ -476,7 +490,7 @@ impl March {
             ("parameters", (&self.parameters).into()),
             ("scattered", (&self.scattered).into()),
         ];
-        if let Along::Rows(map) = along {
+        if let Along::Rows(map) | Along::RowSteps { map, .. } = along {
             resources.extend([
                 ("frame", (&map.frame).into()),
                 ("slices", (&map.slices).into()),

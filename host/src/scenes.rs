@@ -7,6 +7,7 @@ use crate::data::{
     torus, tree,
 };
 use crate::scattering::{Medium, SettingsError};
+use crate::stage::Setting;
 use glam::{Mat4, Quat, Vec2, Vec3};
 
 /// Meshes that are part of the program, from `host/assets`.
@@ -35,6 +36,20 @@ pub struct Scene {
     pub medium: Medium,
     /// Factor on the radiance before the tone curve.
     pub exposure: f32,
+}
+
+impl Scene {
+    /// The scene as [`crate::Stage::new`] takes it.
+    pub fn setting(&self) -> Setting<'_> {
+        Setting {
+            mesh: &self.mesh,
+            view: self.view,
+            light: self.light,
+            radiance: self.radiance,
+            sky: self.sky,
+            medium: self.medium,
+        }
+    }
 }
 
 /// Why a scene could not be built.

@@ -172,7 +172,10 @@ impl Library {
                 let path = &import.path;
                 return Err(wrong(format!("import of `{path}`, which is no module of the library")));
             };
-            if index >= limit {
+            if index == limit {
+                return Err(wrong("a module cannot import itself".to_owned()));
+            }
+            if index > limit {
                 let path = &import.path;
                 return Err(wrong(format!("import of `{path}`, which is listed after this module")));
             }
@@ -184,8 +187,9 @@ impl Library {
 /// Validates against core WebGPU.
 pub(crate) fn validate(
     module: &naga::Module,
-) -> Result<ModuleInfo, naga::WithSpan<naga::valid::ValidationError>> {
-    Validator::new(ValidationFlags::all(), core_capabilities()).validate(module)
+) -> Result<ModuleInfo, Box<naga::WithSpan<naga::valid::ValidationError>>> {
+    let mut validator = Validator::new(ValidationFlags::all(), core_capabilities());
+    validator.validate(module).map_err(Box::new)
 }
 
 fn shader_definitions(definitions: &Definitions) -> HashMap<String, ShaderDefValue> {

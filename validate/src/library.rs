@@ -280,7 +280,7 @@ impl Library {
 }
 
 /// The module that an imported path belongs to: itself, or all but its last part.
-pub(crate) fn resolve<'a>(path: &'a str, known: impl Fn(&str) -> bool) -> Option<&'a str> {
+pub(crate) fn resolve(path: &str, known: impl Fn(&str) -> bool) -> Option<&str> {
     if known(path) {
         return Some(path);
     }
@@ -380,3 +380,6 @@ fn shaders(directory: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
     let entries = entries(directory)?.into_iter();
     Ok(entries.filter_map(|(name, path)| Some((name.strip_suffix(".wgsl")?.to_owned(), path))).collect())
 }
+
+#[cfg(all(test, feature = "command"))]
+mod tests;

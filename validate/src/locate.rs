@@ -4,7 +4,11 @@
 //! naga_oil keeps lines while it preprocesses, but shifts columns (it replaces names) and prepends
 //! a header; a span carries the number of its module in the bits above [`SPAN_BITS`].
 
-use crate::{Error, Library, Location, names::undecorate};
+use crate::{
+    Error, Library, Location,
+    names::undecorate,
+    scan::{is_identifier, without_comments},
+};
 use naga_oil::compose::{Composer, ComposerError, ComposerErrorInner, ErrSource};
 
 /// Bits of a span that are a position; naga_oil's `SPAN_SHIFT`.
@@ -32,12 +36,28 @@ pub(crate) fn locate(
         Position::Line(line) => (Some(line), None),
         Position::Byte(byte) => place(&original, &preprocessed, byte),
         Position::Directive(byte, word) => (directive(&original, byte, word), None),
-        Position::Text(text) => match original.lines().position(|line| line.contains(&text)) {
-            Some(index) => (Some(index as u32 + 1), None),
-            None => (None, None),
-        },
+        Position::Text(text) => (line_with(&original, &text, ""), None),
     };
-    Error::Shader { location: Location { file, line, column }, message: undecorate(&message) }
+    let mut message = undecorate(&message);
+    if let Some(hint) = hint(&message, library) {
+        message = format!("{message}; {hint}");
+    }
+    Error::Shader { location: Location { file, line, column }, message }
+}
+
+/// Why an item that is there is not found by an importer.
+fn hint(message: &str, library: &Library) -> Option<&'static str> {
+    let path = message.strip_prefix("no definition in scope for identifier: `")?;
+    let (module, item) = path.split('`').next()?.rsplit_once("::")?;
+    let source = without_comments(&library.module(module).ok()?.source);
+    let declares = |text: String| source.lines().any(|line| line.trim_start().starts_with(&text));
+    if declares(format!("const {item} =")) {
+        Some("a constant without a type cannot be imported; write it as `const NAME: f32 = …`")
+    } else if declares(format!("override {item}")) {
+        Some("a pipeline override cannot be imported by name")
+    } else {
+        None
+    }
 }
 
 enum Position<'a> {
@@ -70,9 +90,13 @@ fn describe(error: &ComposerErrorInner, offset: usize) -> (String, Position<'_>)
         E::InvalidIdentifier { original, at } => {
             let message = format!(
                 "`{original}` would be renamed when composed: a name of a module must not end in \
-                 a digit or `_`, hold `__`, or be a reserved word"
+                 a digit or `_`, hold `__`, be a reserved word, or be an `alias`"
             );
-            (message, first_position([*at], offset))
+            let position = match first_position([*at], offset) {
+                Position::None => Position::Text(undecorate(original)),
+                position => position,
+            };
+            (message, position)
         }
         E::ImportNotFound(path, _) => {
             let short = path.rsplit("::").next().unwrap_or(path);
@@ -147,18 +171,59 @@ fn place(original: &str, preprocessed: &str, byte: usize) -> (Option<u32>, Optio
     let before = &text[..byte];
     let line = before.matches('\n').count();
     let start = before.rfind('\n').map_or(0, |at| at + 1);
-    let (before, after) = (&text[start..byte], text[byte..].lines().next().unwrap_or_default());
+    let (before, whole) = (&text[start..byte], text[start..].lines().next().unwrap_or_default());
     let own = original.lines().nth(line);
-    // Names before the place may have grown; then the rest of the line tells the column.
     let column = own.and_then(|own| {
         if own.starts_with(before) {
-            Some(before.chars().count())
-        } else {
-            let head = own.strip_suffix(after.trim_end())?;
-            Some(head.chars().count())
+            return Some(before.chars().count());
         }
+        // Names before the place have grown, but there are as many words and signs as there were.
+        let (now, then) = (words(whole), words(own));
+        let index = now.iter().position(|&at| at >= before.chars().count())?;
+        (now.len() == then.len()).then(|| then[index])
     });
     (Some(line as u32 + 1), column.map(|column| column as u32 + 1))
+}
+
+/// Where the words and signs of a line begin, in characters: a path is one, and so is `#{NAME}`.
+fn words(line: &str) -> Vec<usize> {
+    let letters: Vec<char> = line.chars().collect();
+    let mut starts = Vec::new();
+    let mut at = 0;
+    while at < letters.len() {
+        let start = at;
+        if letters[at..].starts_with(&['#', '{']) {
+            let end = letters[at..].iter().position(|&letter| letter == '}');
+            at = end.map_or(letters.len(), |end| at + end + 1);
+        } else {
+            let in_word = |at: usize| {
+                let joins = letters[at..].starts_with(&[':', ':']);
+                let joined = at > start && letters[at] == ':' && letters[at - 1] == ':';
+                is_identifier(letters[at]) || joins || joined
+            };
+            while at < letters.len() && in_word(at) {
+                at += 1;
+            }
+            at = at.max(start + 1);
+        }
+        if !letters[start].is_whitespace() {
+            starts.push(start);
+        }
+    }
+    starts
+}
+
+/// The first line with a word and another text, comments aside.
+pub(crate) fn line_with(original: &str, word: &str, also: &str) -> Option<u32> {
+    let code = without_comments(original);
+    let index = code.lines().position(|line| {
+        line.contains(also)
+            && line.match_indices(word).any(|(at, _)| {
+                let (before, after) = (&line[..at], &line[at + word.len()..]);
+                !before.ends_with(is_identifier) && !after.starts_with(is_identifier)
+            })
+    })?;
+    Some(index as u32 + 1)
 }
 
 /// The line of the directive nearest to a byte that holds a word: positions that naga_oil gives for
@@ -176,4 +241,30 @@ fn directive(original: &str, byte: usize, word: &str) -> Option<u32> {
         start += line.len() + 1;
     }
     best.map(|(_, number)| number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_survive_replaced_names() {
+        let own = "  let a = m::f(x) + #{N} * n::o::g(bad);";
+        let now = "  let a = fX_naga_oil_mod_XAAX(x) + 128 * gX_naga_oil_mod_XBBX(bad);";
+        let text = |line: &str| format!("first\n{line}\nlast\n");
+        let byte = text(now).find("bad").unwrap_or(0);
+        let column = own.find("bad").map(|at| at as u32 + 1);
+        assert_eq!(place(&text(own), &text(now), byte), (Some(2), column));
+        // Where words were added, the line alone is certain.
+        let now = now.replace("128", "- 128");
+        let byte = text(&now).find("bad").unwrap_or(0);
+        assert_eq!(place(&text(own), &text(&now), byte), (Some(2), None));
+    }
+
+    #[test]
+    fn words_are_found_as_wholes() {
+        let source = "#define A\n// Scale\nfn Scaled() {}\nconst Scale = 1;\n";
+        assert_eq!(line_with(source, "Scale", "const"), Some(4));
+        assert_eq!(line_with(source, "Missing", ""), None);
+    }
 }

@@ -131,7 +131,8 @@ pub(crate) fn make_readable(module: &mut naga::Module) {
     }
 }
 
-fn global_names(module: &naga::Module) -> Vec<String> {
+/// Names of everything that is declared at module scope.
+pub(crate) fn global_names(module: &naga::Module) -> Vec<String> {
     let constants = module.constants.iter().filter_map(|(_, item)| item.name.clone());
     let overrides = module.overrides.iter().filter_map(|(_, item)| item.name.clone());
     let variables = module.global_variables.iter().filter_map(|(_, item)| item.name.clone());

@@ -431,11 +431,9 @@ fn interface(
 
 fn collect_structs(module: &Module, ty: Handle<Type>, output: &mut BTreeSet<Handle<Type>>) {
     match &module.types[ty].inner {
-        TypeInner::Struct { members, .. } => {
-            if output.insert(ty) {
-                for member in members {
-                    collect_structs(module, member.ty, output);
-                }
+        TypeInner::Struct { members, .. } if output.insert(ty) => {
+            for member in members {
+                collect_structs(module, member.ty, output);
             }
         }
         TypeInner::Array { base, .. } => collect_structs(module, *base, output),

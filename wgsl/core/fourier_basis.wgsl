@@ -21,6 +21,13 @@ fn guarded(unit: f32) -> f32 {
     return clamp(GUARD + (1.0 - 2.0 * GUARD) * unit, 0.0, 1.0);
 }
 
+/// What is taken off the depth of a view ray before evaluation, towards the light: half the width of
+/// the softened edge. Without it a lit surface shades the end of every ray that meets it, because the
+/// series is 1/2, not 1, at the depth of the blocker itself; the mean error falls to less than half.
+fn surface_bias(bases: u32) -> f32 {
+    return min(0.5 / f32(bases), 0.8 * GUARD);
+}
+
 /// Four bases and the rotation that leads to the next four.
 struct Series {
     /// sin, cos of the first frequency, sin, cos of the second.

@@ -32,6 +32,22 @@ fn march_row(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, optical_st
     return clamp(sum / total, 0.0, 1.0);
 }
 
+/// Plain mean visibility of a view ray over `steps` equal steps along a row of a rectified map: one
+/// texture load a step and nothing else, the fastest march there is. `depth`: of the ray, 0..1;
+/// `texels`: that the ray covers, fractional, clamped to the width of the map.
+fn march_row_steps(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, steps: u32) -> f32 {
+    let width = f32(textureDimensions(map).x);
+    let count = f32(max(steps, 1u));
+    let stride = clamp(texels, 1e-3, width) / count;
+    var at = 0.5 * stride;
+    var lit = 0u;
+    for (var done = 0u; done < steps; done++) {
+        lit += select(0u, 1u, textureLoad(map, vec2<u32>(u32(at), row), 0).x >= depth);
+        at += stride;
+    }
+    return f32(lit) / count;
+}
+
 /// Mean visibility of a view ray over `steps` equal steps through a standard shadow map, weighted by
 /// transmittance. `origin`, `direction`: of the ray in the world; `distance`: its length in metres;
 /// `extinction` in 1/m, zero for the plain mean; `offset`: 0..1, where in each step the sample lies.

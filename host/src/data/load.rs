@@ -29,7 +29,9 @@ pub enum MeshError {
         source: io::Error,
     },
     /// The name does not tell the format.
-    #[error("{path}: the mesh format {extension:?} is not known; give a file that ends in .obj, .gltf or .glb")]
+    #[error(
+        "{path}: the mesh format {extension:?} is not known; give a file that ends in .obj, .gltf or .glb"
+    )]
     UnknownExtension {
         /// The file.
         path: PathBuf,
@@ -169,12 +171,8 @@ impl BufRead for CountLines<'_> {
 }
 
 fn load_obj(path: &Path, bytes: &[u8]) -> Result<Mesh, MeshError> {
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        single_index: true,
-        ignore_points: true,
-        ignore_lines: true,
-    };
+    let options =
+        tobj::LoadOptions { triangulate: true, single_index: true, ignore_points: true, ignore_lines: true };
     let mut reader = CountLines { rest: bytes, lines: 0 };
     let folder = path.parent().unwrap_or(Path::new(""));
     let loaded = tobj::load_obj_buf(&mut reader, &options, |name| tobj::load_mtl(folder.join(name)));
@@ -450,7 +448,8 @@ fn read_elements<T: Clone + Default>(
             Elements::new(Some(replacements.view()), replacements.offset(), size, sparse.count(), buffers)?;
         for i in 0..sparse.count() {
             let index = place.at(i).and_then(little_endian).ok_or_else(missing)? as usize;
-            let slot = values.get_mut(index).ok_or_else(|| format!("sparse index {index} is out of range"))?;
+            let slot =
+                values.get_mut(index).ok_or_else(|| format!("sparse index {index} is out of range"))?;
             *slot = value.at(i).and_then(&decode).ok_or_else(missing)?;
         }
     }
@@ -471,8 +470,8 @@ fn read_triples(accessor: &gltf::Accessor, buffers: &[gltf::buffer::Data]) -> Re
     }
     // The normalised types stand for fractions (of colours).
     let (width, kind) = (accessor.data_type().size(), accessor.data_type());
-    if !matches!(kind, DataType::F32) && !(accessor.normalized() && matches!(kind, DataType::U8 | DataType::U16))
-    {
+    let is_fraction = accessor.normalized() && matches!(kind, DataType::U8 | DataType::U16);
+    if kind != DataType::F32 && !is_fraction {
         return Err(format!("components of type {kind:?}, where F32 is expected"));
     }
     let component = |bytes: &[u8], i: usize| -> Option<f32> {
@@ -494,7 +493,10 @@ fn read_indices(accessor: &gltf::Accessor, buffers: &[gltf::buffer::Data]) -> Re
     if accessor.dimensions() != Dimensions::Scalar
         || !matches!(kind, DataType::U8 | DataType::U16 | DataType::U32)
     {
-        return Err(format!("{:?} elements of type {kind:?}, where unsigned scalars are expected", accessor.dimensions()));
+        return Err(format!(
+            "{:?} elements of type {kind:?}, where unsigned scalars are expected",
+            accessor.dimensions()
+        ));
     }
     read_elements(accessor, buffers, little_endian)
 }
@@ -504,7 +506,8 @@ mod tests {
     use super::super::random::Random;
     use super::*;
 
-    const SQUARE: &str = "mtllib nowhere.mtl\no square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl gone\nf 1 2 3 4\n";
+    const SQUARE: &str =
+        "mtllib nowhere.mtl\no square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl gone\nf 1 2 3 4\n";
 
     fn load(name: &str, bytes: &[u8]) -> Result<Mesh, MeshError> {
         let folder = tempfile::tempdir().expect("a temporary folder");
@@ -641,7 +644,11 @@ mod tests {
             ("\"count\":4,\"type\":\"VEC3\"", "\"count\":18446744073709551615,\"type\":\"VEC3\"", "vertices"),
             ("5126", "5121", "a.glb"),
             ("\"mesh\":0", "\"mesh\":7", "a.glb"),
-            ("\"scene\":0", "\"scene\":0,\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]", "without compression"),
+            (
+                "\"scene\":0",
+                "\"scene\":0,\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]",
+                "without compression",
+            ),
         ];
         for (from, to, part) in cases {
             let message = broken(from, to);

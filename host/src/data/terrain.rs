@@ -21,13 +21,13 @@ pub struct TerrainParameters {
 
 impl Default for TerrainParameters {
     fn default() -> Self {
-        Self { seed: 3, size: 40.0, resolution: 224, height: 9.0 }
+        Self { seed: 3, size: 40.0, resolution: 224, height: 6.0 }
     }
 }
 
 const OCTAVES: u32 = 7;
 /// Ridges across the terrain's edge.
-const RIDGES: f32 = 3.5;
+const RIDGES: f32 = 2.6;
 
 fn fractal(seed: u64, x: f32, z: f32, octaves: u32) -> f32 {
     let (mut sum, mut weight, mut total, mut scale) = (0.0, 1.0, 0.0, 1.0);
@@ -54,16 +54,16 @@ pub fn terrain_height(parameters: &TerrainParameters, x: f32, z: f32) -> f32 {
         let seed = parameters.seed.wrapping_add(0x1000 + u64::from(octave));
         let ridge = 1.0 - (2.0 * value_noise(seed, x + 17.3, y - 4.1) - 1.0).abs();
         // Sharp crests; fine ridges grow only on coarse ones, so that valleys stay smooth.
-        let ridge = ridge * ridge;
+        let ridge = ridge * ridge * (1.6 - 0.6 * ridge);
         sum += weight * ridge * carried;
         total += weight;
         carried = (ridge * 1.3).min(1.0);
-        weight *= 0.47;
+        weight *= 0.43;
         frequency *= 2.07;
     }
     let shape = (sum / total).clamp(0.0, 1.0);
     // Wide valleys, steep flanks.
-    shape.powf(1.25) * parameters.height
+    shape * parameters.height
 }
 
 /// The terrain as a mesh: grass in the valleys, earth and rock on slopes, pale stone on the crests.
@@ -123,7 +123,8 @@ fn albedo(parameters: &TerrainParameters, position: Vec3, normal: Vec3) -> Vec3 
     let crest = Vec3::new(0.52, 0.50, 0.47);
     let slope = 1.0 - normal.y + 0.12 * (patch - 0.5);
     let ground = grass.lerp(earth, step(0.10, 0.24, slope)).lerp(rock, step(0.20, 0.42, slope));
-    let ground = ground.lerp(crest, step(0.62, 0.85, relative + 0.2 * (patch - 0.5)) * step(0.75, 0.4, slope));
+    let ground =
+        ground.lerp(crest, step(0.62, 0.85, relative + 0.2 * (patch - 0.5)) * step(0.75, 0.4, slope));
     (ground * (1.0 + 0.16 * grain)).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
@@ -145,7 +146,7 @@ mod tests {
         assert!(bounds.min.y >= 0.0 && bounds.max.y <= parameters.height);
         assert!(bounds.size().y > 0.5 * parameters.height, "ridges: {bounds:?}");
         assert_eq!((bounds.min.x, bounds.max.z), (-20.0, 20.0));
-        for (p, _) in mesh.positions.iter().zip(&mesh.normals).step_by(97) {
+        for p in mesh.positions.iter().step_by(97) {
             assert_eq!(p.y, terrain_height(&parameters, p.x, p.z));
         }
     }

@@ -30,7 +30,7 @@ pub struct TreeParameters {
 
 impl Default for TreeParameters {
     fn default() -> Self {
-        Self { seed: 1, height: 6.0, crown_radius: 2.7, leaves: 8000, leaf_length: 0.13, clumps: 26 }
+        Self { seed: 1, height: 6.0, crown_radius: 2.7, leaves: 9000, leaf_length: 0.13, clumps: 26 }
     }
 }
 
@@ -105,7 +105,8 @@ fn clumps(parameters: &TreeParameters, random: &mut Random) -> Vec<Clump> {
         // The crown: a dome over a flatter underside, widest at two fifths of its height.
         let up = random.unit();
         let wide = if up < 0.4 { (1.0 - ((0.4 - up) / 0.62).powi(2)).sqrt() } else { 0.0 };
-        let wide = wide.max(if up >= 0.4 { (1.0 - ((up - 0.4) / 0.62).powi(2)).max(0.0).sqrt() } else { 0.0 });
+        let wide =
+            wide.max(if up >= 0.4 { (1.0 - ((up - 0.4) / 0.62).powi(2)).max(0.0).sqrt() } else { 0.0 });
         let angle = random.unit() * TAU;
         let away = random.unit().powf(0.42) * (wide * radius - 0.75 * size).max(0.0);
         let y = base + (up * crown).min(crown - 0.7 * size).max(0.5 * size);
@@ -133,7 +134,7 @@ fn grow(parameters: &TreeParameters, attractors: Vec<Vec3>, random: &mut Random)
     let trunk = (0.36 * parameters.height / step) as usize;
     for i in 0..trunk {
         let t = (i + 1) as f32 / trunk as f32;
-        let aside = 0.035 * parameters.height * (t * 2.6).sin();
+        let aside = 0.02 * parameters.height * (t * 2.6).sin();
         let swing = bend + 1.4 * t;
         let position = Vec3::new(aside * swing.cos(), (i + 1) as f32 * step, aside * swing.sin());
         nodes.push(Node { position, parent: i, depth: 0 });
@@ -187,7 +188,8 @@ fn grow(parameters: &TreeParameters, attractors: Vec<Vec3>, random: &mut Random)
             let way = sum.normalize_or_zero() + 0.45 * onwards + 0.22 * random.in_ball() + 0.06 * Vec3::Y;
             let position = nodes[parent].position + way.normalize_or(Vec3::Y) * step;
             // Two attractors may pull a node to and fro for ever.
-            let again = nodes[fresh.saturating_sub(64)..].iter().any(|n| n.position.distance(position) < 0.2 * step);
+            let again =
+                nodes[fresh.saturating_sub(64)..].iter().any(|n| n.position.distance(position) < 0.2 * step);
             if !again && nodes.len() < MAX_NODES {
                 let depth = nodes[parent].depth + 1;
                 nodes.push(Node { position, parent, depth });
@@ -216,7 +218,7 @@ fn thickness(parameters: &TreeParameters, nodes: &[Node]) -> Vec<f32> {
     }
     let mut radii: Vec<f32> = sums.iter().map(|sum| sum.powf(1.0 / EXPONENT)).collect();
     // The trunk of a tree this high, whatever the number of twigs, and the flare of its roots.
-    let scale = 0.028 * parameters.height / radii[0].max(f32::MIN_POSITIVE);
+    let scale = 0.023 * parameters.height / radii[0].max(f32::MIN_POSITIVE);
     for (radius, node) in radii.iter_mut().zip(nodes) {
         let relative = (*radius / twig.max(f32::MIN_POSITIVE)).clamp(1.0, 8.0);
         // Twigs keep their thickness, thick branches take the scale.
@@ -276,7 +278,8 @@ fn bark(parameters: &TreeParameters, nodes: &[Node], radii: &[f32], random: &mut
             for side in 0..sides {
                 let angle = side as f32 / sides as f32 * TAU;
                 let normal = frame * angle.cos() + across * angle.sin();
-                let furrow = if sides == 14 { 1.0 + 0.09 * (((side * 5) % 7) as f32 / 3.0 - 1.0) } else { 1.0 };
+                let furrow =
+                    if sides == 14 { 1.0 + 0.09 * (((side * 5) % 7) as f32 / 3.0 - 1.0) } else { 1.0 };
                 let radius = if end { 0.3 * radius } else { radius * furrow };
                 let shade = tint * (0.8 + 0.4 * (furrow - 0.9) / 0.2) * random.range(0.9, 1.1);
                 mesh.push(position + normal * radius, normal, brown * shade);
@@ -325,7 +328,8 @@ fn leaves(parameters: &TreeParameters, nodes: &[Node], radii: &[f32], random: &m
         let outward = (node.position - middle).normalize_or(Vec3::Y);
         let base = node.position - stem * random.unit() + random.in_ball() * spread * 0.6;
         let droop = Vec3::new(0.0, -0.35, 0.0);
-        let direction = (0.5 * along + 0.45 * outward + droop + 0.95 * random.direction()).normalize_or(Vec3::X);
+        let direction =
+            (0.5 * along + 0.45 * outward + droop + 0.95 * random.direction()).normalize_or(Vec3::X);
         let facing = Vec3::Y + 0.5 * outward + 0.8 * random.direction();
         let side = direction.cross(facing).normalize_or(direction.any_orthonormal_vector());
         let normal = side.cross(direction);
@@ -371,7 +375,11 @@ mod tests {
         assert_eq!(mesh, tree(&parameters));
         assert_ne!(mesh, tree(&TreeParameters { seed: 2, ..parameters.clone() }));
         assert_eq!(mesh.validate(), Ok(()));
-        assert!(mesh.triangle_count() > 4 * 8000 && mesh.triangle_count() < 120_000, "{}", mesh.triangle_count());
+        assert!(
+            mesh.triangle_count() > 4 * 9000 && mesh.triangle_count() < 120_000,
+            "{}",
+            mesh.triangle_count()
+        );
         assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
         assert!(mesh.albedos.iter().all(|a| a.min_element() > 0.0 && a.max_element() < 1.0));
         let bounds = mesh.bounds().expect("vertices");
@@ -393,7 +401,9 @@ mod tests {
         for triangle in mesh.indices.chunks_exact(3) {
             let corners = [0, 1, 2].map(|i| mesh.positions[triangle[i] as usize]);
             for weights in [(0.33, 0.33), (0.6, 0.2), (0.2, 0.6), (0.2, 0.2)] {
-                let p = corners[0] * (1.0 - weights.0 - weights.1) + corners[1] * weights.0 + corners[2] * weights.1;
+                let p = corners[0] * (1.0 - weights.0 - weights.1)
+                    + corners[1] * weights.0
+                    + corners[2] * weights.1;
                 let (x, z) = (cell(p.x), cell(p.z));
                 if x < count && z < count {
                     covered[z * count + x] = true;

@@ -93,8 +93,8 @@ fn write_unguarded(
                 binding_array_length_map: Default::default(),
             };
             let options = msl_options(reflection, &name);
-            let (text, translation) = msl::write_string(module, info, &options, &pipeline)
-                .map_err(|error| error.to_string())?;
+            let (text, translation) =
+                msl::write_string(module, info, &options, &pipeline).map_err(|error| error.to_string())?;
             // A missing binding is not an error of the whole.
             for name in translation.entry_point_names {
                 name.map_err(|error| error.to_string())?;
@@ -115,8 +115,7 @@ fn write_unguarded(
             Ok(Written::Text(text))
         }
         Backend::Glsl => {
-            let pipeline =
-                glsl::PipelineOptions { shader_stage: stage, entry_point: name, multiview: None };
+            let pipeline = glsl::PipelineOptions { shader_stage: stage, entry_point: name, multiview: None };
             let options = glsl_options(reflection)?;
             let mut text = String::new();
             let policies = BoundsCheckPolicies::default();
@@ -152,7 +151,7 @@ fn spirv_options(reflection: &Reflection) -> spv::Options<'static> {
 /// Slots count up by kind, as a Metal argument table has them.
 fn msl_options(reflection: &Reflection, entry_point: &str) -> msl::Options {
     let (mut buffers, mut textures, mut samplers) = (0, 0, 0);
-    let mut next = |counter: &mut u8| {
+    let next = |counter: &mut u8| {
         *counter += 1;
         *counter - 1
     };
@@ -235,9 +234,5 @@ fn glsl_options(reflection: &Reflection) -> Result<glsl::Options, String> {
         binding_map.insert(resource(binding), counters[kind]);
         counters[kind] = counters[kind].checked_add(1).ok_or("more than 255 bindings")?;
     }
-    Ok(glsl::Options {
-        version: glsl::Version::Desktop(450),
-        binding_map,
-        ..Default::default()
-    })
+    Ok(glsl::Options { version: glsl::Version::Desktop(450), binding_map, ..Default::default() })
 }

@@ -49,9 +49,7 @@ pub fn parse(text: &str) -> Result<Vec<Expected>, Error> {
             message: message.to_owned(),
         };
         let mut words = content.splitn(3, char::is_whitespace);
-        let (Some(subject), Some(backend), Some(reason)) =
-            (words.next(), words.next(), words.next())
-        else {
+        let (Some(subject), Some(backend), Some(reason)) = (words.next(), words.next(), words.next()) else {
             return Err(wrong("expected `pass[:permutation][#entry_point] backend reason`"));
         };
         let Some(backend) = Backend::ALL.into_iter().find(|known| known.name() == backend) else {
@@ -106,12 +104,7 @@ pub enum Verdict {
 }
 
 /// Compares the outcomes of a permutation with the list.
-pub fn judge(
-    list: &[Expected],
-    pass: &str,
-    permutation: &str,
-    outcomes: &[Outcome],
-) -> Vec<Verdict> {
+pub fn judge(list: &[Expected], pass: &str, permutation: &str, outcomes: &[Outcome]) -> Vec<Verdict> {
     let matches = |entry: &Expected, outcome: &Outcome| {
         entry.backend == outcome.backend
             && entry.entry_point.as_ref().is_none_or(|name| *name == outcome.entry_point)
@@ -134,8 +127,7 @@ pub fn judge(
         }
     }
     for entry in about {
-        let failed =
-            |outcome: &Outcome| matches(entry, outcome) && outcome.error.is_some();
+        let failed = |outcome: &Outcome| matches(entry, outcome) && outcome.error.is_some();
         if !outcomes.iter().any(failed) {
             verdicts.push(Verdict::Passed(entry.clone()));
         }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! WebGPU's default limits and core storage formats, by entry point.
 
-use crate::{
-    Access, Binding, BindingKind, EntryPoint, Reflection, Stage, StructLayout, format_name,
-};
+use crate::{Access, Binding, BindingKind, EntryPoint, Reflection, Stage, StructLayout, format_name};
 use naga::StorageFormat;
 
 /// Something that an entry point uses more of than WebGPU grants by default.
@@ -64,10 +62,7 @@ pub fn usage(reflection: &Reflection, entry: &EntryPoint) -> Usage {
     usage
 }
 
-fn used<'a>(
-    reflection: &'a Reflection,
-    entry: &'a EntryPoint,
-) -> impl Iterator<Item = &'a Binding> {
+fn used<'a>(reflection: &'a Reflection, entry: &'a EntryPoint) -> impl Iterator<Item = &'a Binding> {
     reflection.bindings.iter().filter(|binding| binding.entry_points.contains(&entry.name))
 }
 
@@ -124,19 +119,21 @@ pub fn excesses(reflection: &Reflection) -> Vec<Excess> {
     found
 }
 
-/// Uses that core WebGPU has under no limits: formats, accesses, writes from the vertex stage.
-pub fn violations(reflection: &Reflection) -> Vec<String> {
+/// Uses that core WebGPU has under no limits: formats, accesses, writes from the vertex stage. Each with the
+/// name of the binding.
+pub fn violations(reflection: &Reflection) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for binding in &reflection.bindings {
         let name = &binding.name;
+        let mut report = |message| found.push((name.clone(), message));
         let mut writes = false;
         match &binding.kind {
             BindingKind::StorageTexture { format, access, .. } => {
                 let text = format_name(*format);
                 if !is_core_storage_format(*format) {
-                    found.push(format!("`{name}`: {text} is no storage format of core WebGPU"));
+                    report(format!("`{name}`: {text} is no storage format of core WebGPU"));
                 } else if *access == Access::ReadWrite && !may_read_write(*format) {
-                    found.push(format!(
+                    report(format!(
                         "`{name}`: {text} cannot be read_write in core WebGPU; only r32float, \
                          r32uint and r32sint can"
                     ));
@@ -145,12 +142,12 @@ pub fn violations(reflection: &Reflection) -> Vec<String> {
             }
             BindingKind::Storage { writable, .. } => writes = *writable,
             BindingKind::Other { ty } => {
-                found.push(format!("`{name}`: core WebGPU has no {ty}"));
+                report(format!("`{name}`: core WebGPU has no {ty}"));
             }
             _ => {}
         }
         if writes && binding.stages.contains(&Stage::Vertex) {
-            found.push(format!("`{name}`: the vertex stage cannot have writable storage"));
+            report(format!("`{name}`: the vertex stage cannot have writable storage"));
         }
     }
     found
@@ -246,9 +243,8 @@ mod tests {
                     format!("@group(0) @binding({i}) var t{i}_: texture_storage_2d<rgba8unorm, write>;\n")
                 })
                 .collect();
-            let uses: String = (0..count)
-                .map(|i| format!("textureStore(t{i}_, vec2<u32>(0), vec4<f32>(0.0));"))
-                .collect();
+            let uses: String =
+                (0..count).map(|i| format!("textureStore(t{i}_, vec2<u32>(0), vec4<f32>(0.0));")).collect();
             format!("{declarations}@compute @workgroup_size(1) fn main() {{ {uses} }}")
         };
         assert!(limits(&source(4)).is_empty());
@@ -263,10 +259,10 @@ mod tests {
             )
         };
         assert!(limits(&source("256", 4096)).is_empty());
-        assert_eq!(limits(&source("257", 4096)), [
-            "maxComputeInvocationsPerWorkgroup",
-            "maxComputeWorkgroupSizeX"
-        ]);
+        assert_eq!(
+            limits(&source("257", 4096)),
+            ["maxComputeInvocationsPerWorkgroup", "maxComputeWorkgroupSizeX"]
+        );
         assert_eq!(limits(&source("1, 1, 65", 4096)), ["maxComputeWorkgroupSizeZ"]);
         assert_eq!(limits(&source("16, 17", 4096)), ["maxComputeInvocationsPerWorkgroup"]);
         assert_eq!(limits(&source("64", 4097)), ["maxComputeWorkgroupStorageSize"]);
@@ -283,7 +279,11 @@ mod tests {
     #[test]
     fn formats_and_accesses_are_core() {
         let source = |format: &str, access: &str| {
-            let load = if access == "write" { "textureStore(t, vec2<u32>(0), vec4<f32>(0.0));" } else { "let x = textureLoad(t, vec2<u32>(0));" };
+            let load = if access == "write" {
+                "textureStore(t, vec2<u32>(0), vec4<f32>(0.0));"
+            } else {
+                "let x = textureLoad(t, vec2<u32>(0));"
+            };
             violations(&reflect(&format!(
                 "@group(0) @binding(0) var t: texture_storage_2d<{format}, {access}>; @compute @workgroup_size(1) fn main() {{ {load} }}"
             )))
@@ -291,9 +291,9 @@ mod tests {
         assert!(source("rgba16float", "write").is_empty());
         assert!(source("rgba16float", "read").is_empty());
         assert!(source("r32float", "read_write").is_empty());
-        assert!(source("rgba16float", "read_write")[0].contains("read_write"));
-        assert!(source("rg16float", "write")[0].contains("rg16float"));
-        assert!(source("bgra8unorm", "write")[0].contains("bgra8unorm"));
+        assert!(source("rgba16float", "read_write")[0].1.contains("read_write"));
+        assert!(source("rg16float", "write")[0].1.contains("rg16float"));
+        assert!(source("bgra8unorm", "write")[0].1.contains("bgra8unorm"));
     }
 
     #[test]

@@ -61,12 +61,7 @@ pub(crate) fn lint(library: &Library) -> Vec<Finding> {
                     "permutation `{}` of `{}` defines `{name}`, which nothing in it reads",
                     permutation.name, pass.name
                 );
-                report(
-                    Severity::Error,
-                    Location::line(&listing, permutation.line),
-                    "permutations",
-                    message,
-                );
+                report(Severity::Error, Location::line(&listing, permutation.line), "permutations", message);
             }
         }
         // One that no permutation sets is never checked both ways.
@@ -107,9 +102,8 @@ fn directives(source: &str) -> Vec<(u32, String)> {
             _ => words > 1,
         };
         if too_long {
-            let message = format!(
-                "`#{word} {rest}`: the composer tests the first clause only; nest the conditions"
-            );
+            let message =
+                format!("`#{word} {rest}`: the composer tests the first clause only; nest the conditions");
             found.push((line, message));
         }
     }
@@ -121,13 +115,12 @@ fn layout_attributes(source: &str) -> Vec<(u32, String)> {
     let mut found = Vec::new();
     for (line, text) in (1..).zip(without_comments(source).lines()) {
         for attribute in ["@align", "@size"] {
-            let follows = text.match_indices(attribute).any(|(at, _)| {
-                text[at + attribute.len()..].trim_start().starts_with('(')
-            });
+            let follows = text
+                .match_indices(attribute)
+                .any(|(at, _)| text[at + attribute.len()..].trim_start().starts_with('('));
             if follows {
-                let message = format!(
-                    "`{attribute}` is dropped where the struct is imported; use padding members"
-                );
+                let message =
+                    format!("`{attribute}` is dropped where the struct is imported; use padding members");
                 found.push((line, message));
             }
         }
@@ -168,7 +161,8 @@ mod tests {
 
     #[test]
     fn layout_attributes_are_found() {
-        let source = "struct S {\n  @align(16) a: f32,\n  // @size(16)\n  @size (32) b: f32,\n  @sizes c: f32,\n}";
+        let source =
+            "struct S {\n  @align(16) a: f32,\n  // @size(16)\n  @size (32) b: f32,\n  @sizes c: f32,\n}";
         let lines: Vec<u32> = layout_attributes(source).into_iter().map(|(line, _)| line).collect();
         assert_eq!(lines, [2, 4]);
     }

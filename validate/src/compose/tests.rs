@@ -141,6 +141,21 @@ fn a_name_that_importers_cannot_use_is_an_error() {
 }
 
 #[test]
+fn what_cannot_be_imported_says_so() {
+    let leaf = format!("{LEAF}const HALF = 0.5;\noverride speed: f32 = 1.0;\n");
+    for (item, part) in [("HALF", "without a type"), ("speed", "pipeline override")] {
+        let pass = PASS.replace("f32(#{BASES})", &format!("leaf::{item}"));
+        let (place, message) = error(&leaf, MIDDLE, &pass);
+        assert!(place.starts_with("core/passes/pass.wgsl:6:"), "{place}");
+        assert!(message.contains(part), "{message}");
+    }
+    let leaf = format!("{LEAF}alias Pair = vec2<f32>;\n");
+    let (place, message) = error(&leaf, MIDDLE, PASS);
+    assert_eq!(place, "core/leaf.wgsl:7");
+    assert!(message.contains("alias"), "{message}");
+}
+
+#[test]
 fn optional_features_are_rejected() {
     let pass = format!("{PASS}@compute @workgroup_size(1) fn other() {{ let x = subgroupAdd(1u); }}\n");
     let (place, _) = error(LEAF, MIDDLE, &pass);

@@ -2,6 +2,8 @@
 // summary: In-scattered radiance of every pixel from the filtered bases: a dot product, whatever the scene.
 // source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
 // note: Texel i holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
+// note: The ray is moved towards the light by half the width of the series' edge (surface_bias), which the thesis
+// note: does not do: otherwise lit surfaces shade the ends of their own rays.
 // note: Around the light's place in the picture a slice is only a few texels long and the light would bleed
 // note: through blockers: EPIPOLE_MARCH marches the standard shadow map there, blended in without a seam.
 // definition BASES: number M of bases, as in the filter.
@@ -21,7 +23,7 @@
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{
-    series_at, series_next, coefficients, coefficients_lanczos, basis_from_stored
+    series_at, series_next, coefficients, coefficients_lanczos, basis_from_stored, surface_bias
 }
 #import airlight::core::light::Light
 #import airlight::scattering::march::march_shadow_map
@@ -71,7 +73,7 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
     let texels = clamp(size.x * distance * epipolar.sine / slice.radius_max, 0.0, size.x);
     let at = vec2<f32>(max(texels - 0.5, 0.5), epipolar.row + 0.5) / size;
 
-    let depth_of_ray = depth_from_ray(slice, epipolar);
+    let depth_of_ray = depth_from_ray(slice, epipolar) - surface_bias(4u * LAYERS);
     var series = series_at(depth_of_ray, 0u);
 #ifdef LANCZOS
     var window = series_at(1.0 / f32(4u * LAYERS), 0u);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: In-scattered radiance of every pixel by marching: along rows of the rectified map, or through the standard shadow map.
 // source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
-// note: Rows: one step a texel of the nearest row, one texture load a step. With AVERAGE all steps weigh the same.
+// note: Rows: the nearest row, one texture load a step; one step a texel, or with STEPS `steps` equal steps a ray.
 // definition AVERAGE: average visibility instead of visibility weighted by transmittance.
+// definition STEPS: rows by `steps` equal steps, average visibility.
 // definition SHADOW_MAP: march the standard shadow map by `steps` equal steps a ray.
 // binding camera: the camera, perspective (rows) or any (shadow map).
 // binding light: the directional light.
@@ -12,13 +13,13 @@
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
 // binding rectified: the rectified map; rows only.
 // binding shadow_map: depth of the standard shadow map; with SHADOW_MAP only.
-// binding parameters: number of steps; with SHADOW_MAP only.
+// binding parameters: number of steps; with SHADOW_MAP or STEPS only.
 // binding scattered: out, rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
 #import airlight::core::light::Light
-#import airlight::scattering::march::{march_row, march_shadow_map}
+#import airlight::scattering::march::{march_row, march_row_steps, march_shadow_map}
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, neighbour_rows, slice_from_texel, depth_from_ray
 }
@@ -38,11 +39,15 @@ struct MarchParameters {
 @group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
 #ifdef SHADOW_MAP
 @group(#{GROUP}) @binding(7) var shadow_map: texture_2d<f32>;
-@group(#{GROUP}) @binding(8) var<uniform> parameters: MarchParameters;
 #else
 @group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
 @group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
 @group(#{GROUP}) @binding(6) var rectified: texture_2d<f32>;
+#endif
+#ifdef SHADOW_MAP
+@group(#{GROUP}) @binding(8) var<uniform> parameters: MarchParameters;
+#else ifdef STEPS
+@group(#{GROUP}) @binding(8) var<uniform> parameters: MarchParameters;
 #endif
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
@@ -76,10 +81,12 @@ fn march(@builtin(global_invocation_id) id: vec3<u32>) {
     let radius = distance * epipolar.sine;
     // A texel of a ray that barely leaves the light's direction is longer than any ray: the clamp keeps it finite.
     let optical_step = extinction * slice.radius_max / (width * max(epipolar.sine, 1e-6));
-    let visibility = march_row(
-        rectified, row, depth_from_ray(slice, epipolar),
-        width * radius / slice.radius_max, optical_step
-    );
+    let texels = width * radius / slice.radius_max;
+#ifdef STEPS
+    let visibility = march_row_steps(rectified, row, depth_from_ray(slice, epipolar), texels, parameters.steps);
+#else
+    let visibility = march_row(rectified, row, depth_from_ray(slice, epipolar), texels, optical_step);
+#endif
 #endif
     let cosine = dot(ray.direction, light.direction);
     let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);

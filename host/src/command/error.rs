@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! One sentence to the person at the keyboard, and the exit code that goes with it.
+
+use crate::core::{CameraError, LightError};
+use crate::scattering::ScatteringError;
+use crate::scenes::SceneError;
+use crate::{GpuError, PassError, StageError};
+use std::fmt::Display;
+use std::process::ExitCode;
+
+/// How a command ended badly.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// What was typed cannot be meant: a flag, a name, a number. Exit code 2.
+    #[error("{0}")]
+    Misuse(String),
+    /// A file, a folder or the machine did not do. Exit code 1.
+    #[error("{0}")]
+    Failure(String),
+}
+
+impl CommandError {
+    /// Misuse of `flag`.
+    pub fn misuse(flag: &str, problem: impl Display) -> Self {
+        Self::Misuse(format!("{flag}: {problem}"))
+    }
+
+    /// A failure, described.
+    pub fn failure(problem: impl Display) -> Self {
+        Self::Failure(problem.to_string())
+    }
+
+    /// 2 for misuse, 1 for failure.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Misuse(_) => 2,
+            Self::Failure(_) => 1,
+        })
+    }
+}
+
+impl From<GpuError> for CommandError {
+    fn from(error: GpuError) -> Self {
+        Self::failure(error)
+    }
+}
+
+impl From<PassError> for CommandError {
+    fn from(error: PassError) -> Self {
+        Self::failure(error)
+    }
+}
+
+impl From<SceneError> for CommandError {
+    fn from(error: SceneError) -> Self {
+        Self::failure(error)
+    }
+}
+
+impl From<ScatteringError> for CommandError {
+    fn from(error: ScatteringError) -> Self {
+        match error {
+            ScatteringError::Settings(error) => Self::from(error),
+            ScatteringError::Pass(error) => Self::failure(error),
+        }
+    }
+}
+
+impl From<crate::scattering::SettingsError> for CommandError {
+    fn from(error: crate::scattering::SettingsError) -> Self {
+        use crate::scattering::SettingsError as E;
+        let flag = match &error {
+            E::Bases(_) | E::BasesPerThread(_) => "--bases",
+            E::Size { what, .. } => match *what {
+                "a picture" => "--size",
+                "a shadow map" => "--shadow-map",
+                _ => "--map",
+            },
+            E::Medium { name, .. } => match *name {
+                "extinction" => "--extinction",
+                "albedo" => "--albedo",
+                "g" => "--g",
+                _ => "--far",
+            },
+        };
+        Self::misuse(flag, error)
+    }
+}
+
+impl From<StageError> for CommandError {
+    fn from(error: StageError) -> Self {
+        match error {
+            StageError::Camera(error) => {
+                let flag = match error {
+                    CameraError::Direction { .. } => "--eye, --target",
+                    CameraError::FieldOfView { .. } => "--fov",
+                    CameraError::Planes { .. } => "--near, --far",
+                    CameraError::Viewport { .. } => "--size",
+                };
+                Self::misuse(flag, error)
+            }
+            StageError::Light(error @ LightError::Direction(_)) => Self::misuse("--light", error),
+            StageError::Light(error @ LightError::Scene { .. }) => Self::failure(error),
+            StageError::Size(error) => error.into(),
+            StageError::Pass(error) => error.into(),
+        }
+    }
+}

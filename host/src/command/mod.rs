@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The command-line program: parsing, progress, exit codes.
+
+mod bench;
+mod error;
+mod gallery;
+mod list;
+mod parse;
+mod progress;
+mod run;
+mod scattering;
+
+pub use error::CommandError;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Stylized light in volumes: runs Airlight's WGSL modules, measures them, shows them.
+#[derive(Parser)]
+#[command(name = "airlight", version, about)]
+struct Arguments {
+    /// No progress, no summary: only errors and what was asked for.
+    #[arg(long, global = true)]
+    quiet: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Every picture from real data, with an index page.
+    Gallery(gallery::Options),
+    /// Light shafts around meshes of yours.
+    Scattering(scattering::Options),
+    /// Any compute or full-screen pass on arrays of yours, by binding name.
+    Run(run::Options),
+    /// Ratios against baselines, interleaved, with the error of both sides.
+    Bench(bench::Options),
+    /// Passes with their one-line descriptions.
+    List(list::ListOptions),
+    /// Adapter, driver and limits.
+    Info,
+}
+
+/// Runs the program on the process's arguments. Exit code 2: misuse of the command line; 1: anything else that failed.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let quiet = arguments.quiet;
+    let done = match arguments.command {
+        Command::Gallery(options) => gallery::run(&options, quiet),
+        Command::Scattering(options) => scattering::run(&options, quiet),
+        Command::Run(options) => run::run(&options),
+        Command::Bench(options) => bench::run(&options, quiet),
+        Command::List(options) => list::list(&options),
+        Command::Info => list::info(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("airlight: {error}");
+            error.exit_code()
+        }
+    }
+}

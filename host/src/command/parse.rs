@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Spellings that all commands share.
+
+use glam::Vec3;
+
+/// `x,y,z`, finite numbers.
+pub fn vector(text: &str) -> Result<Vec3, String> {
+    let values = numbers(text)?;
+    let [x, y, z] = values[..] else {
+        return Err(format!("`{text}` is not three numbers x,y,z"));
+    };
+    Ok(Vec3::new(x, y, z))
+}
+
+/// `WxH`, both at least 1.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("`{text}` is not a size WxH such as 1280x720");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let parse = |side: &str| side.parse::<u32>().ok().filter(|side| *side > 0).ok_or_else(wrong);
+    Ok([parse(width)?, parse(height)?])
+}
+
+/// A finite number.
+pub fn number(text: &str) -> Result<f32, String> {
+    text.trim()
+        .parse::<f32>()
+        .ok()
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| format!("`{text}` is not a finite number"))
+}
+
+/// A light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightSpelling {
+    /// `directional:AZIMUTH,ELEVATION` in degrees.
+    Directional {
+        /// From +z towards +x.
+        azimuth: f32,
+        /// Above the horizon.
+        elevation: f32,
+    },
+}
+
+/// `directional:AZ,EL`.
+pub fn light(text: &str) -> Result<LightSpelling, String> {
+    let wrong = || format!("`{text}` is not a light such as directional:135,40 (azimuth, elevation in degrees)");
+    let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
+    match kind {
+        "directional" => {
+            let values = numbers(rest)?;
+            let [azimuth, elevation] = values[..] else { return Err(wrong()) };
+            if elevation.abs() > 90.0 {
+                return Err(format!("elevation {elevation} is impossible: it must be from -90 to 90 degrees"));
+            }
+            Ok(LightSpelling::Directional { azimuth, elevation })
+        }
+        "spot" | "point" | "area" | "textured" | "environment" => {
+            Err(format!("light `{kind}` is not there yet; directional:AZ,EL is"))
+        }
+        _ => Err(wrong()),
+    }
+}
+
+fn numbers(text: &str) -> Result<Vec<f32>, String> {
+    text.split(',').map(number).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spellings_are_read_and_nonsense_is_refused() {
+        assert_eq!(vector("1,-2,3.5").unwrap(), Vec3::new(1.0, -2.0, 3.5));
+        assert_eq!(size("640x480").unwrap(), [640, 480]);
+        assert_eq!(
+            light("directional:10,20").unwrap(),
+            LightSpelling::Directional { azimuth: 10.0, elevation: 20.0 }
+        );
+        for wrong in ["", "1,2", "1,2,3,4", "1,nan,3", "a,b,c", "inf,0,0"] {
+            assert!(vector(wrong).is_err(), "{wrong}");
+        }
+        for wrong in ["", "640", "0x5", "-1x5", "640x", "axb", "1.5x2", "99999999999x1"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+        for wrong in ["sun", "directional", "directional:1", "directional:0,91", "spot:1,2", "directional:nan,0"] {
+            assert!(light(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Compilers and validators that are programs of their own.
+
+use crate::check::Severity;
+use std::{
+    ffi::OsStr,
+    fmt, fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+/// A program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Tool {
+    /// Chrome's WGSL compiler.
+    #[value(name = "tint")]
+    Tint,
+    /// The validator of SPIR-V.
+    #[value(name = "spirv-val")]
+    SpirvVal,
+    /// The reference compiler of GLSL.
+    #[value(name = "glslangValidator")]
+    Glslang,
+}
+
+impl Tool {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Tint, Self::SpirvVal, Self::Glslang];
+
+    /// The program's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tint => "tint",
+            Self::SpirvVal => "spirv-val",
+            Self::Glslang => "glslangValidator",
+        }
+    }
+
+    /// How to get it.
+    pub(crate) fn remedy(self) -> &'static str {
+        match self {
+            Self::Tint => "build `tint_cmd_tint_cmd` of https://dawn.googlesource.com/dawn",
+            Self::SpirvVal => "install Debian's `spirv-tools` or the Vulkan SDK",
+            Self::Glslang => "install Debian's `glslang-tools` or the Vulkan SDK",
+        }
+    }
+}
+
+impl fmt::Display for Tool {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Where a program is, by the folders of a path variable.
+pub(crate) fn find(tool: Tool, path: Option<&OsStr>) -> Option<PathBuf> {
+    let name = format!("{tool}{}", std::env::consts::EXE_SUFFIX);
+    std::env::split_paths(path?).map(|folder| folder.join(&name)).find(|file| file.is_file())
+}
+
+/// What Tint says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Diagnostic {
+    pub severity: Severity,
+    pub message: String,
+    pub line: Option<u32>,
+}
+
+fn failed(message: String) -> Vec<Diagnostic> {
+    vec![Diagnostic { severity: Severity::Error, message, line: None }]
+}
+
+/// Errors and warnings of Tint about a WGSL file.
+pub(crate) fn tint(program: &Path, text: &str, file: &Path) -> Vec<Diagnostic> {
+    // Writing WGSL again needs no writer that a build of Tint may lack.
+    let output_file = file.with_extension("out");
+    let output_name = output_file.to_string_lossy();
+    let arguments = ["--format", "wgsl", "--output-name", &*output_name, "--diagnostics-format", "json"];
+    let output = match run(program, &arguments, text.as_bytes(), file) {
+        Ok(output) => output,
+        Err(message) => return failed(message),
+    };
+    let said =
+        format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let diagnostics = diagnostics(&said);
+    let has_error = diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+    if !output.status.success() && !has_error {
+        return failed(format!("tint failed: {}", said.trim()));
+    }
+    diagnostics
+}
+
+/// Reads `[{"severity", "message", "range": {"start": {"line"}}}]`; notes explain what precedes.
+fn diagnostics(text: &str) -> Vec<Diagnostic> {
+    let json = text.find('[').and_then(|start| {
+        serde_json::Deserializer::from_str(&text[start..]).into_iter::<serde_json::Value>().next()?.ok()
+    });
+    let mut diagnostics: Vec<Diagnostic> = Vec::new();
+    for entry in json.iter().filter_map(serde_json::Value::as_array).flatten() {
+        let message = entry["message"].as_str().unwrap_or_default();
+        let severity = match entry["severity"].as_str() {
+            Some("note") => {
+                if let Some(last) = diagnostics.last_mut() {
+                    last.message = format!("{}; {message}", last.message);
+                }
+                continue;
+            }
+            Some("warning") => Severity::Warning,
+            _ => Severity::Error,
+        };
+        let line = entry["range"]["start"]["line"].as_u64();
+        diagnostics.push(Diagnostic {
+            severity,
+            message: message.to_owned(),
+            line: line.and_then(|line| u32::try_from(line).ok()).filter(|&line| line > 0),
+        });
+    }
+    diagnostics
+}
+
+/// Validates SPIR-V for Vulkan 1.1.
+pub(crate) fn spirv_val(program: &Path, words: &[u32], file: &Path) -> Result<(), String> {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    judged(program, run(program, &["--target-env", "vulkan1.1"], &bytes, file)?, file)
+}
+
+/// Compiles GLSL; the stage is the file's extension.
+pub(crate) fn glslang(program: &Path, text: &str, file: &Path) -> Result<(), String> {
+    judged(program, run(program, &[], text.as_bytes(), file)?, file)
+}
+
+fn judged(program: &Path, output: Output, file: &Path) -> Result<(), String> {
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    let path = file.display().to_string();
+    let lines: Vec<&str> =
+        said.lines().map(str::trim).filter(|line| !line.is_empty() && *line != path).collect();
+    let name = program.file_stem().unwrap_or_default().to_string_lossy();
+    let said = lines.join(" | ").replace(&format!("{path}:"), "").replace(&path, "");
+    Err(format!("{name}: {}", said.trim()))
+}
+
+fn run(program: &Path, arguments: &[&str], content: &[u8], file: &Path) -> Result<Output, String> {
+    fs::write(file, content).map_err(|error| format!("cannot write {}: {error}", file.display()))?;
+    let mut command = Command::new(program);
+    let output = command.args(arguments).arg(file).output();
+    output.map_err(|error| format!("cannot run {}: {error}", program.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_program_is_found_on_the_path_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(format!("tint{}", std::env::consts::EXE_SUFFIX));
+        assert_eq!(find(Tool::Tint, Some(folder.path().as_os_str())), None);
+        fs::write(&file, "").unwrap();
+        assert_eq!(find(Tool::Tint, Some(folder.path().as_os_str())), Some(file));
+        assert_eq!(find(Tool::Tint, None), None);
+    }
+
+    #[test]
+    fn diagnostics_are_read() {
+        let text = r#"x [{"severity":"error","message":"a","range":{"start":{"line":3}}},
+            {"severity":"note","message":"b","range":{"start":{"line":1}}},
+            {"severity":"warning","message":"c"}]"#;
+        let expected = [
+            Diagnostic { severity: Severity::Error, message: "a; b".into(), line: Some(3) },
+            Diagnostic { severity: Severity::Warning, message: "c".into(), line: None },
+        ];
+        assert_eq!(diagnostics(text), expected);
+        assert_eq!(diagnostics(""), []);
+    }
+}
