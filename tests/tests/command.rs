@@ -163,7 +163,8 @@ fn scattering<'a>(changed: &[&'a str]) -> Vec<&'a str> {
     let mut own: Vec<&'a str> = SMALL.to_vec();
     own.extend(["--mesh", "mesh.obj", "--out", "old.png"]);
     for pair in own.chunks(2) {
-        if !changed.contains(&pair[0]) {
+        let spelled = format!("{}=", pair[0]);
+        if !changed.iter().any(|argument| *argument == pair[0] || argument.starts_with(&spelled)) {
             arguments.extend(pair);
         }
     }

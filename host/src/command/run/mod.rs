@@ -112,7 +112,7 @@ pub fn run(options: &Options) -> Result<(), CommandError> {
     let plan = Plan::new(options, &shaders, &limits)?;
     let resources = bindings::resources(options, &plan, &limits)?;
     for written in resources.iter().filter_map(|planned| planned.written.as_ref()) {
-        check_writable(written)?;
+        check_writable(&written.flag, &written.file)?;
     }
 
     let gpu = pollster::block_on(Gpu::new())?;
@@ -281,16 +281,15 @@ fn read(gpu: &Gpu, made: &Made, written: &Written) -> Result<Array, String> {
     }
 }
 
-/// Fails where the file cannot be made, before anything is computed; leaves nothing behind.
-fn check_writable(written: &Written) -> Result<(), CommandError> {
-    let failed = |problem: String| CommandError::failure(format!("{}: {problem}", written.flag));
-    if written.file.is_dir() {
-        return Err(failed("is a folder".to_owned()));
+/// Fails where `file` cannot be made, before anything is computed for it; leaves nothing behind.
+pub(super) fn check_writable(flag: &str, file: &Path) -> Result<(), CommandError> {
+    let failed = |problem: String| CommandError::failure(format!("{flag}: {problem}"));
+    if file.is_dir() {
+        return Err(failed(named(file, "is a folder; give the name of a file".to_owned())));
     }
-    let folder =
-        written.file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match tempfile::tempfile_in(folder) {
         Ok(_) => Ok(()),
-        Err(error) => Err(failed(format!("cannot write: {}", named(folder, one_line(error))))),
+        Err(error) => Err(failed(format!("cannot write into {}", named(folder, one_line(error))))),
     }
 }

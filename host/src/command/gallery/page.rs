@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The contact sheet: all pictures with what made them and how long it took.
+
+use super::Plate;
+use crate::command::CommandError;
+use crate::formats::write_whole;
+use std::fmt::Write as _;
+use std::path::Path;
+
+const STYLE: &str = "\
+:root{color-scheme:dark}\
+body{margin:0;background:#15171a;color:#d9d6cf;font:15px/1.5 system-ui,sans-serif}\
+main{max-width:1360px;margin:0 auto;padding:32px 24px}\
+h1{font-weight:500;margin:0 0 4px}h2{font-weight:500;margin:48px 0 8px}\
+p{margin:0 0 12px;color:#a5a198}\
+.first img{width:100%}\
+.sheet{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:16px;margin-top:16px}\
+figure{margin:0}img{width:100%;display:block;border-radius:3px;background:#000}\
+figcaption{font-size:13px;color:#a5a198;padding:4px 0}\
+table{border-collapse:collapse;font-size:13px;margin-top:12px}td{padding:2px 18px 2px 0}td+td{text-align:right}\
+";
+
+/// Writes the page.
+pub fn write(path: &Path, adapter: &str, size: [u32; 2], plates: &[Plate]) -> Result<(), CommandError> {
+    let page = render(adapter, size, plates).map_err(CommandError::failure)?;
+    write_whole(path, |writer| writer.write_all(page.as_bytes())).map_err(CommandError::failure)
+}
+
+fn render(adapter: &str, [width, height]: [u32; 2], plates: &[Plate]) -> Result<String, std::fmt::Error> {
+    let mut page = String::new();
+    writeln!(page, "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Airlight gallery</title>")?;
+    writeln!(page, "<style>{STYLE}</style><main><h1>Airlight gallery</h1>")?;
+    writeln!(page, "<p>{width}x{height} pixels on {}</p>", escape(adapter))?;
+    for plate in plates {
+        let Plate { scene, settings, pictures, times } = plate;
+        let folder = format!("scattering/{}", scene.name);
+        writeln!(page, "<section><h2>{}</h2><p>{folder}: {}</p>", escape(scene.title), parameters(plate))?;
+        for (index, (file, caption)) in pictures.iter().enumerate() {
+            let class = if index == 0 { " class=\"first\"" } else { "" };
+            writeln!(
+                page,
+                "<figure{class}><a href=\"{folder}/{file}\"><img src=\"{folder}/{file}\" alt=\"{caption}\"></a>\
+                 <figcaption>{caption}</figcaption></figure>"
+            )?;
+            if index == 0 {
+                page.push_str("<div class=\"sheet\">\n");
+            }
+        }
+        page.push_str("</div><table>\n");
+        for (step, milliseconds) in times {
+            writeln!(page, "<tr><td>{step}</td><td>{milliseconds:.1} ms</td></tr>")?;
+        }
+        let [columns, rows] = settings.map;
+        writeln!(page, "<tr><td>rectified map</td><td>{columns}x{rows}, {} bases</td></tr>", settings.bases)?;
+        page.push_str("</table></section>\n");
+    }
+    page.push_str("</main></html>\n");
+    Ok(page)
+}
+
+fn parameters(plate: &Plate) -> String {
+    let medium = &plate.scene.medium;
+    let view = &plate.scene.view;
+    format!(
+        "{} triangles, extinction {} /m, albedo {}, g {}, eye {}, target {}, field of view {}°, light {:.3}",
+        plate.scene.mesh.triangle_count(),
+        medium.extinction,
+        medium.albedo.x,
+        medium.g,
+        view.eye,
+        view.target,
+        view.field_of_view,
+        plate.scene.light,
+    )
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
