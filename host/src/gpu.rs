@@ -58,15 +58,19 @@ impl Gpu {
             .await
             .map_err(|_| GpuError::NoAdapter)?;
         let info = adapter.get_info();
-        let limits = wgpu::Limits::default();
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("airlight"),
-                required_limits: limits.clone(),
+                required_limits: wgpu::Limits::default(),
                 ..Default::default()
             })
             .await
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), message: error.to_string() })?;
+        Ok(Self::from_device(info, device, queue))
+    }
+
+    /// Takes the device of an engine. Its handler of uncaptured errors is replaced.
+    pub fn from_device(adapter: wgpu::AdapterInfo, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         // wgpu panics on uncaptured errors by default; they are kept instead, and returned by the next `submit`.
         let uncaptured = Arc::new(Mutex::new(None));
         let kept = Arc::clone(&uncaptured);
@@ -75,7 +79,8 @@ impl Gpu {
                 first.get_or_insert(error.to_string());
             }
         }));
-        Ok(Self { adapter: info, device, queue, limits, uncaptured })
+        let limits = device.limits();
+        Self { adapter, device, queue, limits, uncaptured }
     }
 
     /// A new command encoder.

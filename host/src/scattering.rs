@@ -219,6 +219,9 @@ impl Settings {
         if self.epipole_march {
             definitions = definitions.flag("EPIPOLE_MARCH");
         }
+        if self.weighting == Weighting::Average {
+            definitions = definitions.flag("AVERAGE");
+        }
         definitions
     }
 }

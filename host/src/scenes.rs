@@ -96,27 +96,25 @@ fn placed(mesh: Mesh, at: Vec3, turn: f32) -> Mesh {
     mesh.transformed(Mat4::from_rotation_translation(Quat::from_rotation_y(turn.to_radians()), at))
 }
 
-/// A bunny under a leafy tree, late light from behind the crown.
+/// A bunny under a leafy tree, late light through the crown.
 fn foliage() -> Result<Scene, SceneError> {
-    let mut mesh = terrain(&TerrainParameters { seed: 11, size: 30.0, resolution: 128, height: 0.5 })
-        .with_albedo(Vec3::new(0.16, 0.17, 0.08));
-    let ground = |x, z| {
-        terrain_height(&TerrainParameters { seed: 11, size: 30.0, resolution: 128, height: 0.5 }, x, z)
-    };
-    let crown = tree(&TreeParameters { seed: 4, leaves: 12000, ..TreeParameters::default() });
-    mesh.append(&placed(crown, Vec3::new(0.3, ground(0.3, -0.4) - 0.05, -0.4), 20.0));
-    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 0.95).with_albedo(Vec3::new(0.75, 0.70, 0.64));
-    mesh.append(&placed(bunny, Vec3::new(-1.15, ground(-1.15, 1.35) - 0.02, 1.35), 15.0));
+    let parameters = TerrainParameters { seed: 11, size: 44.0, resolution: 160, height: 0.6 };
+    let mut mesh = terrain(&parameters).with_albedo(Vec3::new(0.11, 0.13, 0.05));
+    let ground = |x, z| terrain_height(&parameters, x, z);
+    let crown = tree(&TreeParameters { seed: 4, leaves: 14000, clumps: 30, ..TreeParameters::default() });
+    mesh.append(&placed(crown, Vec3::new(0.4, ground(0.4, -0.6) - 0.05, -0.6), 20.0));
+    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 0.9).with_albedo(Vec3::new(0.72, 0.66, 0.60));
+    mesh.append(&placed(bunny, Vec3::new(-1.35, ground(-1.35, 1.9) - 0.02, 1.9), 25.0));
     Ok(Scene {
         name: "foliage",
         title: "Bunny under a tree",
         mesh,
-        view: view(Vec3::new(-1.2, 1.25, 7.6), Vec3::new(-0.35, 2.45, 0.0), 46.0, 0.1, 26.0),
-        light: direction_from_angles(152.0, 47.0),
-        radiance: Vec3::new(17.0, 13.6, 9.4),
-        sky: Sky::new(Vec3::new(0.20, 0.34, 0.58), Vec3::new(0.62, 0.66, 0.70), Vec3::new(0.08, 0.08, 0.06)),
-        medium: Medium::new(0.05, Vec3::splat(0.96), 0.45, 26.0)?,
-        exposure: 0.9,
+        view: view(Vec3::new(-2.3, 1.0, 8.6), Vec3::new(-0.35, 2.85, 0.0), 40.0, 0.1, 30.0),
+        light: direction_from_angles(184.0, 39.0),
+        radiance: Vec3::new(8.4, 6.0, 3.5),
+        sky: Sky::new(Vec3::new(0.05, 0.10, 0.20), Vec3::new(0.17, 0.19, 0.22), Vec3::new(0.03, 0.03, 0.025)),
+        medium: Medium::new(0.034, Vec3::splat(0.96), 0.6, 40.0)?,
+        exposure: 0.62,
     })
 }
 
@@ -127,44 +125,44 @@ fn suzanne_on_terrain() -> Result<Scene, SceneError> {
     let at = Vec2::new(-2.0, 3.0);
     let ground = terrain_height(&parameters, at.x, at.y);
     let head = standing(mesh_from_bytes(SUZANNE.0, SUZANNE.1)?, 3.6).with_albedo(Vec3::new(0.62, 0.33, 0.18));
-    mesh.append(&placed(head, Vec3::new(at.x, ground - 0.3, at.y), -25.0));
+    mesh.append(&placed(head, Vec3::new(at.x, ground - 0.3, at.y), 30.0));
     Ok(Scene {
         name: "terrain",
         title: "Suzanne on a terrain",
         mesh,
         view: view(
-            Vec3::new(at.x + 4.0, ground + 3.2, at.y + 11.5),
-            Vec3::new(at.x + 0.8, ground + 1.6, at.y),
-            48.0,
+            Vec3::new(at.x + 5.2, ground + 2.4, at.y + 8.5),
+            Vec3::new(at.x + 0.6, ground + 2.0, at.y),
+            46.0,
             0.2,
             60.0,
         ),
-        light: direction_from_angles(228.0, 21.0),
-        radiance: Vec3::new(18.0, 11.5, 6.2),
-        sky: Sky::new(Vec3::new(0.16, 0.24, 0.44), Vec3::new(0.72, 0.52, 0.38), Vec3::new(0.08, 0.07, 0.07)),
-        medium: Medium::new(0.03, Vec3::splat(0.95), 0.35, 60.0)?,
+        light: direction_from_angles(258.0, 20.0),
+        radiance: Vec3::new(9.0, 5.4, 2.7),
+        sky: Sky::new(Vec3::new(0.04, 0.07, 0.15), Vec3::new(0.22, 0.16, 0.13), Vec3::new(0.03, 0.03, 0.03)),
+        medium: Medium::new(0.016, Vec3::splat(0.95), 0.4, 80.0)?,
         exposure: 0.9,
     })
 }
 
-/// A torus that stands in a shaft: the case that rings.
+/// A torus against the light: its shadow, and the beam through its hole, hang in the mist.
 fn torus_scene() -> Result<Scene, SceneError> {
-    let mut mesh = plane(Vec2::splat(40.0), 8).with_albedo(Vec3::new(0.32, 0.31, 0.30));
-    let ring = torus(1.5, 0.5, 128, 48).with_albedo(Vec3::new(0.70, 0.20, 0.11));
-    let stand = Mat4::from_translation(Vec3::new(0.0, 2.3, 0.0))
-        * Mat4::from_rotation_y(0.35)
-        * Mat4::from_rotation_x(1.25);
-    mesh.append(&ring.transformed(stand));
+    let mut mesh = plane(Vec2::splat(60.0), 8).with_albedo(Vec3::new(0.13, 0.13, 0.14));
+    let light = direction_from_angles(160.0, 34.0);
+    let ring = torus(1.7, 0.75, 160, 64).with_albedo(Vec3::new(0.66, 0.17, 0.09));
+    // Its axis points to the light, all but ten degrees.
+    let stand = Quat::from_rotation_arc(Vec3::Y, (light + Vec3::new(0.15, 0.05, 0.0)).normalize());
+    mesh.append(&ring.transformed(Mat4::from_rotation_translation(stand, Vec3::new(0.0, 2.75, 0.0))));
     Ok(Scene {
         name: "torus",
         title: "A torus",
         mesh,
-        view: view(Vec3::new(-3.4, 2.0, 6.6), Vec3::new(0.15, 1.75, 0.0), 44.0, 0.1, 24.0),
-        light: direction_from_angles(140.0, 46.0),
-        radiance: Vec3::new(15.0, 13.5, 11.5),
-        sky: Sky::new(Vec3::new(0.05, 0.07, 0.12), Vec3::new(0.11, 0.13, 0.17), Vec3::new(0.04, 0.04, 0.04)),
-        medium: Medium::new(0.07, Vec3::splat(0.95), 0.3, 24.0)?,
-        exposure: 1.0,
+        view: view(Vec3::new(-4.6, 1.3, 6.4), Vec3::new(-0.1, 2.15, 0.6), 46.0, 0.1, 24.0),
+        light,
+        radiance: Vec3::new(8.5, 7.0, 5.4),
+        sky: Sky::new(Vec3::new(0.02, 0.03, 0.06), Vec3::new(0.05, 0.06, 0.08), Vec3::new(0.03, 0.03, 0.03)),
+        medium: Medium::new(0.045, Vec3::splat(0.95), 0.35, 30.0)?,
+        exposure: 0.8,
     })
 }
 

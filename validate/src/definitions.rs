@@ -62,7 +62,7 @@ impl FromStr for Definition {
 
 /// A set of definitions, ordered by name, so that it prints and compares the same way everywhere.
 ///
-/// The text form is that of the permutations files: `BASES=32 BASIS_RGBA16FLOAT`.
+/// The text form is that of the permutations files: `BASES=32 RGBA16FLOAT`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Definitions(BTreeMap<String, Definition>);
 

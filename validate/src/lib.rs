@@ -10,8 +10,8 @@
 //! use airlight_validate::{Definitions, Library};
 //!
 //! let library = Library::builtin();
-//! let definitions = Definitions::new().set("BASES", 32).flag("BASIS_RGBA16FLOAT");
-//! assert_eq!(definitions.to_string(), "BASES=32 BASIS_RGBA16FLOAT");
+//! let definitions = Definitions::new().set("BASES", 32).flag("RGBA16FLOAT");
+//! assert_eq!(definitions.to_string(), "BASES=32 RGBA16FLOAT");
 //! assert!(library.passes().iter().any(|pass| pass.name == "scattering/filter"));
 //! ```
 //!

@@ -5,7 +5,7 @@
 //! # a comment
 //! filter
 //! + default: BASES=32
-//! + rgba16float: BASES=32 BASIS_RGBA16FLOAT
+//! + rgba16float: BASES=32 RGBA16FLOAT
 //! ```
 
 use crate::{Definitions, Error, Location};

@@ -30,7 +30,9 @@ struct Camera {
 
 /// A view ray: world-space origin in metres, unit direction.
 struct Ray {
+    /// Where it starts in the world, metres.
     origin: vec3<f32>,
+    /// Unit vector, away from the eye.
     direction: vec3<f32>,
 }
 

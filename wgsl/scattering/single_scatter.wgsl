@@ -29,8 +29,8 @@ fn transmittance(optical_depth: f32) -> f32 {
 
 /// 1 - exp(-x) for x >= 0, without cancellation for small x. Relative error below 1e-6.
 fn one_minus_exp(x: f32) -> f32 {
-    let series = x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0))));
-    return select(1.0 - exp(-x), series, x < 0.05);
+    let series = x * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0)))));
+    return select(1.0 - exp(-x), series, x < 0.3);
 }
 
 /// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or

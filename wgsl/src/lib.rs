@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: MIT OR Apache-2.0
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 //! Airlight's WGSL as text, without dependencies.
 //!
 //! A shader is two things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs

@@ -429,7 +429,8 @@ mod tests {
     #[test]
     fn headers_are_read() {
         let header = Header::new(
-            "// SPDX-License-Identifier: MIT\n#define_import_path a::b\n// summary: Does it.\n// source: a: b.\n// note: one\n\
+            "// SPDX-License-Identifier: MIT\n#define_import_path a::b\n\
+             // summary: Does it.\n// source: a: b.\n// note: one\n\
              // note: two\n// definition M: how many.\n// binding x: out, metres.\nfn f() {}\n// summary: not this\n",
         );
         assert_eq!(header.summary, "Does it.");

@@ -50,10 +50,10 @@ pub struct Options {
     /// Light: azimuth from +z towards +x and elevation, degrees, pointing TOWARDS the light.
     #[arg(long, value_name = "directional:AZ,EL", default_value = "directional:150,35", value_parser = parse::light)]
     light: LightSpelling,
-    /// Linear RGB radiance of the light.
+    /// Linear RGB radiance of the light (irradiance of a surface that faces it).
     #[arg(long, value_name = "R,G,B", default_value = "12,10.5,8.4", value_parser = parse::vector)]
     radiance: Vec3,
-    /// Extinction of the air, 1/m; 0 is a clear picture [default: optical depth 0.7 over the mesh].
+    /// Extinction of the air, 1/m; 0 is a clear picture [default: optical depth 0.7 to the far plane].
     #[arg(long, value_name = "S", value_parser = parse::number, allow_hyphen_values = true)]
     extinction: Option<f32>,
     /// Single-scattering albedo, 0..1.
@@ -108,6 +108,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         let shown = options.radiance;
         return Err(CommandError::misuse("--radiance", format!("{shown} is impossible: 0 to 1e4 is possible")));
     }
+    super::run::check_writable("--out", &options.out)?;
     let bar = progress::bar(4, quiet);
     bar.set_message("reading meshes");
     let mesh = read_meshes(&options.mesh)?;
@@ -209,6 +210,8 @@ fn fourier(
     buffers: &mut Vec<(&'static str, Array)>,
 ) -> Result<Texture, CommandError> {
     let prefiltered = Prefiltered::new(gpu, shaders, settings, options.size)?;
+    // Memory that ran out is said here, before a binding fails for want of a texture.
+    gpu.check()?;
     let bound = prefiltered.bind(gpu, &stage.inputs())?;
     let mut encoder = gpu.encoder();
     prefiltered.record(&mut encoder, &bound);

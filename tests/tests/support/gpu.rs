@@ -17,7 +17,7 @@ use airlight_tests::reference::camera::{self, Camera as ReferenceCamera};
 use airlight_tests::reference::scattering as reference;
 use glam::{Mat4, Vec2, Vec3};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// The device of this test binary.
 pub fn gpu() -> &'static Gpu {
@@ -26,6 +26,12 @@ pub fn gpu() -> &'static Gpu {
         Ok(gpu) => gpu,
         Err(error) => panic!("{error}"),
     })
+}
+
+/// One test at a time: a software adapter shares the cores with the references, and both use all of them.
+pub fn turn() -> MutexGuard<'static, ()> {
+    static TURN: Mutex<()> = Mutex::new(());
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The shaders under test: those that ship, or a mutation of them.

@@ -67,10 +67,12 @@ fn surface_visibility(point: vec3<f32>, normal: vec3<f32>) -> f32 {
 
 @fragment
 fn fragment_surface(varyings: Varyings) -> @location(0) vec4<f32> {
-    // Meshes are closed to the eye from both sides: leaves and terrain are single sheets.
-    let towards_eye = camera.eye - varyings.world;
+    // Both faces are lit, since leaves and terrain are single sheets: the normal is turned to the side of the
+    // triangle that is seen. The interpolated normal alone would flip at silhouettes.
+    let triangle = cross(dpdx(varyings.world), dpdy(varyings.world));
+    let seen = select(-triangle, triangle, dot(triangle, camera.eye - varyings.world) >= 0.0);
     let unit = varyings.normal / max(length(varyings.normal), 1e-6);
-    let normal = select(-unit, unit, dot(unit, towards_eye) >= 0.0);
+    let normal = select(-unit, unit, dot(unit, seen) >= 0.0);
     let cosine = max(dot(normal, light.direction), 0.0);
     let sun = light.radiance * (cosine * surface_visibility(varyings.world, normal));
     let up = 0.5 + 0.5 * normal.y;

@@ -4,11 +4,13 @@
 // note: Texel i holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
 // note: The ray is moved towards the light by half the width of the series' edge (surface_bias), which the thesis
 // note: does not do: otherwise lit surfaces shade the ends of their own rays.
-// note: Around the light's place in the picture a slice is only a few texels long and the light would bleed
-// note: through blockers: EPIPOLE_MARCH marches the standard shadow map there, blended in without a seam.
+// note: Around the light's place in the picture (and its antipode's) rays cover only a few texels and the light
+// note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
+// note: texels, very short rays included, blended in without a seam.
 // definition BASES: number M of bases, as in the filter.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
+// definition AVERAGE: the bases are plain means, and so is that march.
 // binding camera: the camera, perspective.
 // binding light: the directional light and its shadow map's clip space.
 // binding medium: the medium.
@@ -94,8 +96,13 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef EPIPOLE_MARCH
     let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
     let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
+#ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
     let marched = march_shadow_map(
-        shadow_map, light, ray.origin, ray.direction, distance, medium.extinction, steps, 0.5
+        shadow_map, light, ray.origin, ray.direction, distance, extinction, steps, 0.5
     );
     visibility = mix(visibility, marched, near_epipole);
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Turns the rectified map into Fourier bases and filters them along its rows by a weighted running mean.
 // source: thesis 4.3.1 to 4.3.3, Eq. 4.6 to 4.9, Listings 4.1 to 4.3.
-// note: One thread takes one row and BASES_PER_THREAD bases (4, 8, 16 or 32), four of them a vector.
+// note: One thread takes one row and BASES_PER_THREAD bases, four of them a vector.
 // note: Depths outside 0..1 are clamped, non-finite ones count as unblocked.
 // definition BASES: number M of bases, a multiple of 4 from 4 to 128.
 // definition BASES_PER_THREAD: bases a thread filters, a multiple of 4.

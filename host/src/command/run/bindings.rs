@@ -553,7 +553,9 @@ impl Place<'_> {
             TextureDimension::D2 => {
                 format!("height {height} and width {width}; a device takes at most {side} each")
             }
-            _ => format!("{layers} layers of height {height} and width {width}; a device takes at most {depth} layers of {side} each"),
+            _ => format!(
+                "{layers} layers of height {height} and width {width}; a device takes at most {depth} layers of {side} each"
+            ),
         })
     }
 

@@ -33,8 +33,8 @@ Fields (--set NAME.FIELD=V): NAME is the binding or its struct; V one number, a 
   Uniforms are zero but for what is set. Fields nest (a.b), arrays take an index (a[2]).
 
 What is written (--out NAME=FILE.npy[:SHAPE[:TYPE]]), where SHAPE is
-  storage texture   HEIGHT,WIDTH, or LAYERS,HEIGHT,WIDTH for arrays and 3D; without it --size. The file gets the channels
-                    as a last axis if there are several: f32, u8 for 8-bit unorm, u32 or i32 for integers
+  storage texture   HEIGHT,WIDTH, or LAYERS,HEIGHT,WIDTH for arrays and 3D; without it --size. The file gets several
+                    channels as a last axis: f32, u8 for 8-bit unorm, u32 or i32 for integers
   storage buffer    COUNT or any shape, in 32-bit numbers; TYPE is f32, u32 or i32, without it that of the shader
   render target     named `color`, as large as --size
   SHAPE is not needed where --in gives the same binding an array, nor for a struct.

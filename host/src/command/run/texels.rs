@@ -33,7 +33,8 @@ fn channel(format: Format) -> Option<Channel> {
     })
 }
 
-/// The format that a sampled texture of `channels` (1 to 4, three are padded) is given for `data`, or which data it takes.
+/// The format of a sampled texture that `data` of `channels` (1 to 4, three are padded) becomes; an error says which
+/// data it takes.
 pub fn format_for(
     sample: Sample,
     filtered: bool,

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Every struct that host and shaders share lies in memory as naga says: each field is written alone
+//! through encase, and its bytes are looked for at the offset that reflection reports.
+#![allow(clippy::unwrap_used)]
+
+use airlight::core::{Camera, Light, Sky, TonemapParameters};
+use airlight::scattering::{Frame, MarchParameters, Medium};
+use airlight_validate::{BindingKind, Library, Member, StructLayout};
+use encase::{ShaderType, UniformBuffer, internal::WriteInto};
+use glam::{Mat4, Vec2, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
+const PRIVATE: [(&str, &str); 1] = [("ScanParameters", "tests/tests/core.rs, scans")];
+
+/// The same distinct numbers in every field, whatever its type.
+trait Sentinel: Copy {
+    /// The WGSL type.
+    const TYPE: &'static str;
+    fn zero() -> Self;
+    fn sentinel() -> Self;
+    /// Words of the sentinel, and where each lies from the field's offset.
+    fn words() -> Vec<(u32, u32)>;
+}
+
+impl Sentinel for f32 {
+    const TYPE: &'static str = "f32";
+    fn zero() -> Self {
+        0.0
+    }
+    fn sentinel() -> Self {
+        1.25
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1.25_f32.to_bits())]
+    }
+}
+
+impl Sentinel for u32 {
+    const TYPE: &'static str = "u32";
+    fn zero() -> Self {
+        0
+    }
+    fn sentinel() -> Self {
+        0x0102_0304
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 0x0102_0304)]
+    }
+}
+
+impl Sentinel for Vec2 {
+    const TYPE: &'static str = "vec2<f32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1.5, 2.5)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits())]
+    }
+}
+
+impl Sentinel for Vec3 {
+    const TYPE: &'static str = "vec3<f32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1.5, 2.5, 3.5)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits())]
+    }
+}
+
+impl Sentinel for Mat4 {
+    const TYPE: &'static str = "mat4x4<f32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::from_cols_array(&std::array::from_fn(|i| i as f32 + 1.0))
+    }
+    // Column after column: WGSL's m[column][row], a column every 16 bytes.
+    fn words() -> Vec<(u32, u32)> {
+        (0..16).map(|i| (4 * i, (i as f32 + 1.0).to_bits())).collect()
+    }
+}
+
+/// What is known of a Rust twin.
+struct Twin {
+    size: u64,
+    /// Name, WGSL type, words, and the whole struct's bytes with only this field set.
+    fields: Vec<(&'static str, &'static str, Vec<(u32, u32)>, Vec<u8>)>,
+}
+
+fn bytes<T: ShaderType + WriteInto>(value: &T) -> Vec<u8> {
+    let mut buffer = UniformBuffer::new(Vec::<u8>::new());
+    buffer.write(value).unwrap();
+    buffer.into_inner()
+}
+
+/// A twin from its fields in order: the literal fails to compile with one missing.
+macro_rules! twin {
+    ($twins:ident: $name:ident { $($field:ident: $ty:ty),* $(,)? }) => {{
+        let zero = || $name { $($field: <$ty as Sentinel>::zero()),* };
+        let mut fields = Vec::new();
+        $({
+            let mut value = zero();
+            value.$field = <$ty as Sentinel>::sentinel();
+            fields.push((stringify!($field), <$ty as Sentinel>::TYPE, <$ty as Sentinel>::words(), bytes(&value)));
+        })*
+        $twins.insert(stringify!($name), Twin { size: $name::min_size().get(), fields });
+    }};
+}
+
+fn twins() -> BTreeMap<&'static str, Twin> {
+    let mut twins = BTreeMap::new();
+    twin!(twins: Camera {
+        clip_from_world: Mat4, world_from_clip: Mat4, eye: Vec3, near_depth: f32,
+        viewport: Vec2, far_depth: f32, projection: u32,
+    });
+    twin!(twins: Light {
+        clip_from_world: Mat4, world_from_clip: Mat4, direction: Vec3, far_depth: f32,
+        radiance: Vec3, reserved: f32,
+    });
+    twin!(twins: Sky {
+        zenith: Vec3, reserved_a: f32, horizon: Vec3, reserved_b: f32, ground: Vec3, reserved_c: f32,
+    });
+    twin!(twins: TonemapParameters { exposure: f32, dither: f32, reserved_a: f32, reserved_b: f32 });
+    twin!(twins: Medium {
+        albedo: Vec3, extinction: f32, g: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
+    });
+    twin!(twins: Frame {
+        light: Vec3, azimuth_min: f32, axis_a: Vec3, rows_per_radian: f32,
+        axis_b: Vec3, rows: f32, eye: Vec3, wraps: f32,
+    });
+    twin!(twins: MarchParameters { steps: u32, offset: f32, reserved_a: u32, reserved_b: u32 });
+    twins
+}
+
+/// What is wrong with a twin; none where it fits.
+fn difference(layout: &StructLayout, twin: &Twin) -> Option<String> {
+    let name = &layout.name;
+    if u64::from(layout.size) != twin.size {
+        return Some(format!("{name} has {} bytes in WGSL and {} in Rust", layout.size, twin.size));
+    }
+    let shader: Vec<&str> = layout.members.iter().map(|member| member.name.as_str()).collect();
+    let host: Vec<&str> = twin.fields.iter().map(|field| field.0).collect();
+    if shader != host {
+        return Some(format!("{name} has {shader:?} in WGSL and {host:?} in Rust"));
+    }
+    for (member, (field, ty, words, bytes)) in layout.members.iter().zip(&twin.fields) {
+        if member.ty != *ty {
+            return Some(format!("{name}.{field} is {} in WGSL and {ty} in Rust", member.ty));
+        }
+        let mut expected = vec![0_u8; twin.size as usize];
+        for (at, word) in words {
+            let at = (member.offset + at) as usize;
+            expected[at..at + 4].copy_from_slice(&word.to_le_bytes());
+        }
+        if *bytes != expected {
+            let at = bytes.iter().position(|byte| *byte != 0);
+            return Some(format!("{name}.{field} is at {} in WGSL and at {at:?} in Rust", member.offset));
+        }
+    }
+    None
+}
+
+/// Every struct of a uniform or of the storage buffer that later passes read as one, with its pass.
+fn shared_structs() -> Vec<(String, StructLayout)> {
+    let library = Library::builtin();
+    let mut found = Vec::new();
+    for pass in library.passes() {
+        for permutation in library.permutations(&pass.name).unwrap() {
+            let reflection = library.compose(&pass.name, &permutation.definitions).unwrap().reflect();
+            for binding in &reflection.bindings {
+                let (BindingKind::Uniform { ty, .. } | BindingKind::Storage { ty, .. }) = &binding.kind else {
+                    continue;
+                };
+                let place = format!("{}:{} binding {}", pass.name, permutation.name, binding.name);
+                match (reflection.layout(ty), &binding.kind) {
+                    (Some(layout), _) => found.push((place, layout.clone())),
+                    (None, BindingKind::Uniform { .. }) => panic!("{place}: uniform of {ty}, which is no struct"),
+                    (None, _) => {}
+                }
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_shared_struct_has_a_twin_with_the_same_layout() {
+    let twins = twins();
+    let mut seen = BTreeSet::new();
+    for (place, layout) in shared_structs() {
+        if PRIVATE.iter().any(|(name, _)| *name == layout.name) {
+            seen.insert(layout.name);
+            continue;
+        }
+        let twin = twins.get(layout.name.as_str());
+        let twin = twin.unwrap_or_else(|| panic!("{place}: the struct {} has no Rust twin here", layout.name));
+        assert_eq!(difference(&layout, twin), None, "{place}");
+        // Uniforms are bound whole: WGSL's alignment of structs is 16.
+        assert_eq!(twin.size % 16, 0, "{place}");
+        seen.insert(layout.name);
+    }
+    let known: BTreeSet<String> =
+        twins.keys().chain(PRIVATE.iter().map(|(name, _)| name)).map(|name| (*name).to_owned()).collect();
+    assert_eq!(seen, known, "a twin whose struct no pass has any more");
+}
+
+#[test]
+fn a_wrong_layout_is_noticed() {
+    let twins = twins();
+    let (_, right) = shared_structs().into_iter().find(|(_, layout)| layout.name == "Medium").unwrap();
+    let twin = &twins["Medium"];
+    assert_eq!(difference(&right, twin), None);
+    let wrong = |change: fn(&mut StructLayout)| {
+        let mut layout = right.clone();
+        change(&mut layout);
+        difference(&layout, twin)
+    };
+    assert!(wrong(|l| l.size += 16).unwrap().contains("48 bytes"));
+    assert!(wrong(|l| l.members[1].offset = 16).unwrap().contains("Medium.extinction"));
+    assert!(wrong(|l| l.members.swap(1, 2)).is_some());
+    assert!(wrong(|l| l.members[2].ty = "u32".to_owned()).unwrap().contains("u32"));
+    let extra = Member { name: "x".to_owned(), ty: "f32".to_owned(), offset: 28, size: 4, stride: None };
+    let mut longer = right.clone();
+    longer.members.push(extra);
+    assert!(difference(&longer, twin).is_some());
+}

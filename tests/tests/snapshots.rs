@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Every intermediate buffer of the scattering pipeline against its snapshot, on small scenes of the
+//! tests' own. `make bless` replaces what has changed; look at the pictures at full size first.
+#![allow(clippy::unwrap_used)]
+
+#[path = "support/gpu.rs"]
+mod gpu;
+#[path = "support/snapshot.rs"]
+mod snapshot;
+
+use airlight::Texture;
+use airlight::core::Tonemap;
+use airlight::scattering::{Along, BasisFormat, Composite, March, Prefiltered, Settings, Weighting};
+use gpu::{TestScene, gpu, shaders};
+use snapshot::{Buffer, Mode, Picture, Tolerance, assert_buffer, assert_picture, mode};
+
+const PICTURE: [u32; 2] = [64, 48];
+const MAP: [u32; 2] = [48, 32];
+const SHADOW: [u32; 2] = [48, 48];
+
+fn tolerance(absolute: f64, relative: f64, outliers: f64) -> Tolerance {
+    Tolerance { absolute, relative, outliers }
+}
+
+/// Layer `layer` of a texture, the first `keep` channels of each texel.
+fn buffer(texture: &Texture, layer: usize, keep: usize, tolerance: Tolerance) -> Buffer {
+    let values = texture.read(gpu()).unwrap();
+    let [columns, rows, layers] = texture.size().map(|side| side as usize);
+    let channels = values.len() / (columns * rows * layers);
+    let values = values[layer * columns * rows * channels..][..columns * rows * channels]
+        .chunks_exact(channels)
+        .flat_map(|texel| texel[..keep].to_vec())
+        .collect();
+    Buffer { adapter: gpu().description(), shape: [columns, rows, keep], tolerance, values }
+}
+
+fn check(scene_name: &str, scene: &TestScene) {
+    let _turn = gpu::turn();
+    let stage = scene.stage(PICTURE, SHADOW);
+    let inputs = stage.inputs();
+    // Half floats hold visibility and basis to 5e-4, 8 bits to 2e-3; a depth next to an edge of the map
+    // may come from its other side on another adapter.
+    let name = |what: &str| format!("{scene_name}_{what}");
+    let sharp = tolerance(1e-4, 0.0, 0.02);
+    assert_buffer(&name("shadow_map"), &buffer(&stage.pictures.shadow_map, 0, 1, sharp));
+    assert_buffer(&name("depth"), &buffer(&stage.pictures.depth, 0, 1, tolerance(1e-5, 0.0, 0.02)));
+    assert_buffer(&name("surface"), &buffer(&stage.pictures.surface, 0, 3, tolerance(2e-3, 0.01, 0.05)));
+
+    let settings =
+        Settings { map: MAP, bases: 16, format: BasisFormat::Rgba8Unorm, ..Settings::default() };
+    let method = Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap();
+    let bound = method.bind(gpu(), &inputs).unwrap();
+    let mut encoder = gpu().encoder();
+    method.record(&mut encoder, &bound);
+    gpu().submit(encoder).unwrap();
+    let map = &method.rectification;
+    let frame = Buffer {
+        adapter: gpu().description(),
+        shape: [4, 4, 1],
+        tolerance: tolerance(1e-5, 1e-5, 0.0),
+        values: map.frame.read_floats(gpu()).unwrap(),
+    };
+    assert_buffer(&name("frame"), &frame);
+    assert_buffer(&name("slices"), &buffer(&map.slices, 0, 4, tolerance(1e-5, 1e-4, 0.0)));
+    assert_buffer(&name("rectified"), &buffer(&map.rectified, 0, 1, tolerance(1e-4, 0.0, 0.03)));
+    for layer in [0, 3] {
+        let bases = buffer(&method.bases, layer, 4, tolerance(4e-3, 0.0, 0.05));
+        assert_buffer(&name(&format!("bases_{layer}")), &bases);
+    }
+    let scattered = tolerance(2e-3, 0.01, 0.05);
+    assert_buffer(&name("prefiltered"), &buffer(&method.scattered, 0, 4, scattered));
+
+    for (what, along) in
+        [("marched_rows", Along::Rows(map)), ("marched_shadow_map", Along::ShadowMap { steps: 64 })]
+    {
+        let march = March::new(gpu(), shaders(), &along, Weighting::Transmittance, PICTURE).unwrap();
+        let bound = march.bind(gpu(), &inputs, &along).unwrap();
+        let mut encoder = gpu().encoder();
+        march.record(&mut encoder, &bound);
+        gpu().submit(encoder).unwrap();
+        assert_buffer(&name(what), &buffer(&march.scattered, 0, 4, scattered));
+    }
+
+    let composite = Composite::new(gpu(), shaders()).unwrap();
+    let composed = composite.run(gpu(), &inputs, &stage.pictures.surface, &method.scattered).unwrap();
+    assert_buffer(&name("composed"), &buffer(&composed, 0, 3, tolerance(2e-3, 0.01, 0.05)));
+    let pixels = Tonemap::new(gpu(), shaders()).unwrap().run(gpu(), &composed, 1.0).unwrap();
+    let picture = Picture { size: PICTURE, pixels };
+    assert_picture(&name("picture"), &gpu().description(), &picture, 0.99);
+}
+
+#[test]
+fn torus_over_a_plane() {
+    check("torus", &gpu::torus_over_plane());
+}
+
+#[test]
+fn small_tree_with_the_light_in_the_picture() {
+    check("tree", &gpu::small_tree());
+}
+
+// The machinery itself.
+
+fn sample() -> Buffer {
+    Buffer {
+        adapter: "A (driver 1)".to_owned(),
+        shape: [10, 10, 2],
+        tolerance: tolerance(1e-3, 1e-2, 0.02),
+        values: (0..200).map(|i| (i as f32 * 0.37).sin() * 3.0).collect(),
+    }
+}
+
+#[test]
+fn text_keeps_a_buffer_within_a_tenth_of_its_tolerance() {
+    let mut buffer = sample();
+    buffer.values[..6].copy_from_slice(&[f32::NAN, f32::INFINITY, 0.0, -0.0, 1e-9, -12345.6]);
+    let text = buffer.to_text();
+    let back = Buffer::from_text(&text).unwrap();
+    assert_eq!((&back.adapter, back.shape, back.tolerance), (&buffer.adapter, buffer.shape, buffer.tolerance));
+    assert_eq!(buffer.difference(&back), None);
+    let mut strict = buffer.clone();
+    strict.tolerance = tolerance(1e-4, 1e-3, 0.0);
+    assert_eq!(strict.difference(&back), None);
+    assert_eq!(Buffer::from_text("adapter: A\nshape: 1 2\n"), None);
+    assert_eq!(back.to_text(), Buffer::from_text(&back.to_text()).unwrap().to_text());
+}
+
+#[test]
+fn one_texel_too_far_off_is_named() {
+    let blessed = sample();
+    let mut new = sample();
+    new.values[2 * 34 + 1] += 0.02;
+    assert!(blessed.values[2 * 34 + 1].abs() < 1.6);
+    let message = new.difference(&blessed).unwrap();
+    assert!(message.contains("(4, 3), channel 1") && message.starts_with("1 of 100"), "{message}");
+    // Another adapter has its outliers, as many as are stated.
+    new.adapter = "B (driver 7)".to_owned();
+    assert_eq!(new.difference(&blessed), None);
+    (0..6).for_each(|i| new.values[i] += 1.0);
+    assert!(new.difference(&blessed).unwrap().starts_with("4 of 100"));
+    // A NaN is never within a tolerance; nor is another shape.
+    let mut broken = sample();
+    broken.values[0] = f32::NAN;
+    assert!(broken.difference(&blessed).is_some());
+    let mut narrow = sample();
+    narrow.shape = [20, 5, 2];
+    assert!(narrow.difference(&blessed).unwrap().contains("shape"));
+}
+
+#[test]
+fn pictures_are_compared_by_structure() {
+    let size = [32, 24];
+    let pixels: Vec<u8> = (0..32 * 24).flat_map(|i| [(i % 32 * 8) as u8, (i / 32 * 10) as u8, 90, 255]).collect();
+    let picture = Picture { size, pixels };
+    assert_eq!(Picture::from_png(&picture.to_png()), Some(picture.clone()));
+    let changed = |amount: u8| {
+        let mut other = picture.clone();
+        other.pixels.iter_mut().step_by(3).for_each(|p| *p = p.saturating_add(amount));
+        picture.similarity(&other)
+    };
+    assert!(picture.similarity(&picture) > 0.9999 && changed(1) > 0.99 && changed(60) < 0.9, "{}", changed(60));
+    assert!(Picture::from_png(b"no picture").is_none());
+}
+
+#[test]
+fn blessing_from_another_adapter_is_refused() {
+    let (here, there) = ("A (driver 1)", "A (driver 2)");
+    assert_eq!(mode(None, None, Some(there), here), Ok(Mode::Compare));
+    assert_eq!(mode(Some("no"), Some(""), None, here), Ok(Mode::Compare));
+    assert_eq!(mode(Some("always"), Some("1"), Some(here), here), Ok(Mode::Bless));
+    assert_eq!(mode(Some("always"), Some("1"), None, here), Ok(Mode::Bless));
+    let refused = mode(Some("always"), Some("1"), Some(there), here).unwrap_err();
+    assert!(refused.contains(here) && refused.contains(there));
+    assert!(mode(Some("always"), None, None, here).is_err());
+    assert!(mode(None, Some("1"), Some(here), here).is_err());
+}
