@@ -17,7 +17,9 @@ pub fn kind_text(kind: &BindingKind) -> String {
         BindingKind::StorageTexture { dimension, format, .. } => {
             format!("{dimension} storage texture {}", format_name(*format))
         }
-        BindingKind::Sampler { comparison } => if *comparison { "comparison sampler" } else { "sampler" }.to_owned(),
+        BindingKind::Sampler { comparison } => {
+            if *comparison { "comparison sampler" } else { "sampler" }.to_owned()
+        }
         BindingKind::Other { ty } => ty.clone(),
     }
 }
@@ -63,7 +65,9 @@ pub(crate) fn layout_entry(binding: &Binding, visibility: wgpu::ShaderStages) ->
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let ty = match &binding.kind {
         BindingKind::Uniform { .. } | BindingKind::Other { .. } => buffer(wgpu::BufferBindingType::Uniform),
-        BindingKind::Storage { writable, .. } => buffer(wgpu::BufferBindingType::Storage { read_only: !writable }),
+        BindingKind::Storage { writable, .. } => {
+            buffer(wgpu::BufferBindingType::Storage { read_only: !writable })
+        }
         BindingKind::Texture { dimension, sample, filtered, multisampled } => wgpu::BindingType::Texture {
             sample_type: match sample {
                 Sample::Float => wgpu::TextureSampleType::Float { filterable: *filtered },
@@ -132,7 +136,8 @@ pub(crate) fn mismatch(kind: &BindingKind, resource: Resource<'_>) -> Option<Str
                 && texture.raw.usage().contains(wgpu::TextureUsages::STORAGE_BINDING);
             (!fits).then(|| described(texture))
         }
-        (BindingKind::Sampler { comparison }, Resource::Sampler(sampler)) => (sampler.comparison != *comparison)
+        (BindingKind::Sampler { comparison }, Resource::Sampler(sampler)) => (sampler.comparison
+            != *comparison)
             .then(|| if sampler.comparison { "a comparison sampler" } else { "a sampler" }.to_owned()),
         (_, Resource::Buffer(_)) => Some("a buffer".to_owned()),
         (_, Resource::Texture(texture)) => Some(described(texture)),

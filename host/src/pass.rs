@@ -160,7 +160,8 @@ impl Pass {
         let entries: Vec<_> =
             reflection.entry_points.iter().filter(|entry| entry.stage == Stage::Compute).collect();
         let used: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
-        let (bindings, layout, pipeline_layout) = layouts(gpu, &reflection, &used, wgpu::ShaderStages::COMPUTE);
+        let (bindings, layout, pipeline_layout) =
+            layouts(gpu, &reflection, &used, wgpu::ShaderStages::COMPUTE);
         let module = shader_module(gpu, composed);
         let pipelines = entries
             .iter()
@@ -235,10 +236,35 @@ impl Pass {
         Ok(Self { name: composed.pass.clone(), bindings, layout, pipelines: Pipelines::Render(pipeline) })
     }
 
+    /// A pass that fills a picture of `format` by its entry points `vertex_picture` and `fragment`.
+    ///
+    /// # Errors
+    /// As [`Pass::render`], and as [`Pass::compute`] for the composition.
+    pub fn picture(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        pass: &str,
+        definitions: &Definitions,
+        fragment: &str,
+        format: wgpu::TextureFormat,
+    ) -> Result<Self, PassError> {
+        let stages = RenderStages {
+            vertex: "vertex_picture",
+            fragment: Some(fragment),
+            vertices: None,
+            target: Some(format),
+            depth: None,
+        };
+        Self::render(gpu, &shaders.compose_with(pass, definitions)?, &stages)
+    }
+
     /// What the pass expects, in one line.
     pub fn expects(&self) -> String {
-        let list: Vec<_> =
-            self.bindings.iter().map(|binding| format!("`{}` ({})", binding.name, kind_text(&binding.kind))).collect();
+        let list: Vec<_> = self
+            .bindings
+            .iter()
+            .map(|binding| format!("`{}` ({})", binding.name, kind_text(&binding.kind)))
+            .collect();
         if list.is_empty() { "no bindings".to_owned() } else { list.join(", ") }
     }
 
@@ -252,7 +278,9 @@ impl Pass {
     /// # Errors
     /// [`PassError`] for an unknown, missing or ill-typed name.
     pub fn bind(&self, gpu: &Gpu, resources: &[(&str, Resource<'_>)]) -> Result<Bound, PassError> {
-        if let Some((name, _)) = resources.iter().find(|(name, _)| !self.bindings.iter().any(|b| b.name == **name)) {
+        if let Some((name, _)) =
+            resources.iter().find(|(name, _)| !self.bindings.iter().any(|b| b.name == **name))
+        {
             return Err(PassError::UnknownBinding {
                 pass: self.name.clone(),
                 name: (*name).to_owned(),
@@ -325,7 +353,8 @@ impl Pass {
         entry_point: &str,
         groups: [u32; 3],
     ) -> Result<(), PassError> {
-        let entries: &[ComputeEntry] = if let Pipelines::Compute(entries) = &self.pipelines { entries } else { &[] };
+        let entries: &[ComputeEntry] =
+            if let Pipelines::Compute(entries) = &self.pipelines { entries } else { &[] };
         let Some(entry) = entries.iter().find(|entry| entry.name == entry_point) else {
             let names: Vec<_> = entries.iter().map(|entry| entry.name.as_str()).collect();
             return Err(PassError::UnknownEntryPoint {
@@ -338,6 +367,24 @@ impl Pass {
         Ok(())
     }
 
+    /// Records a pass built by [`Pass::picture`] over all pixels of `target`.
+    pub fn fill(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound, target: &Texture) {
+        let ops =
+            wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+        let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(&self.name),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops,
+            })],
+            ..Default::default()
+        });
+        self.set(&mut render, bound);
+        render.draw(0..3, 0..1);
+    }
+
     /// Sets the render pipeline and its resources; the caller draws.
     pub fn set(&self, render: &mut wgpu::RenderPass<'_>, bound: &Bound) {
         if let Pipelines::Render(pipeline) = &self.pipelines {
@@ -347,7 +394,12 @@ impl Pass {
     }
 }
 
-fn record(encoder: &mut wgpu::CommandEncoder, pipeline: &wgpu::ComputePipeline, bound: &Bound, groups: [u32; 3]) {
+fn record(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &wgpu::ComputePipeline,
+    bound: &Bound,
+    groups: [u32; 3],
+) {
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, &bound.group, &[]);

@@ -81,7 +81,10 @@ impl Buffer {
     /// As [`Buffer::read`].
     pub fn read_words(&self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
         let bytes = self.read(gpu)?;
-        Ok(bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect())
+        Ok(bytes
+            .chunks_exact(4)
+            .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+            .collect())
     }
 
     /// The contents as 32-bit floats.
@@ -132,12 +135,22 @@ impl Texture {
 
     /// What most passes write: a storage texture that the next pass reads, of one layer.
     pub fn storage(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
-        Self::new(gpu, size, format, wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING)
+        Self::new(
+            gpu,
+            size,
+            format,
+            wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+        )
     }
 
     /// A render target that later passes read, of one layer.
     pub fn target(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
-        Self::new(gpu, size, format, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING)
+        Self::new(
+            gpu,
+            size,
+            format,
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        )
     }
 
     fn create(
@@ -162,7 +175,8 @@ impl Texture {
             usage: usage | copies,
             view_formats: &[],
         });
-        let view = raw.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
+        let view = raw
+            .create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
         Self { raw, view, dimension }
     }
 
@@ -188,7 +202,10 @@ impl Texture {
         let channels = usize::from(format.components());
         let expected = width as usize * height as usize * layers as usize * channels;
         if values.len() != expected {
-            return Err(GpuError::Refused(format!("a texture of {expected} values was given {}", values.len())));
+            return Err(GpuError::Refused(format!(
+                "a texture of {expected} values was given {}",
+                values.len()
+            )));
         }
         let bytes = encode(format, values)?;
         gpu.queue.write_texture(
@@ -268,7 +285,9 @@ fn decode(format: wgpu::TextureFormat, bytes: &[u8], values: &mut Vec<f32>) -> R
         F::R16Float | F::Rg16Float | F::Rgba16Float => {
             values.extend(bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()));
         }
-        F::R8Unorm | F::Rg8Unorm | F::Rgba8Unorm => values.extend(bytes.iter().map(|b| f32::from(*b) / 255.0)),
+        F::R8Unorm | F::Rg8Unorm | F::Rgba8Unorm => {
+            values.extend(bytes.iter().map(|b| f32::from(*b) / 255.0))
+        }
         F::R32Uint => {
             values.extend(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32));
         }

@@ -3,8 +3,8 @@
 
 use crate::core::{DepthRange, PerspectiveView, Sky, direction_from_angles};
 use crate::data::{
-    Bounds, Mesh, MeshError, TerrainParameters, TreeParameters, mesh_from_bytes, plane, terrain, terrain_height,
-    torus, tree,
+    Bounds, Mesh, MeshError, TerrainParameters, TreeParameters, mesh_from_bytes, plane, terrain,
+    terrain_height, torus, tree,
 };
 use crate::scattering::{Medium, SettingsError};
 use crate::stage::Setting;
@@ -191,5 +191,11 @@ pub fn framing(bounds: &Bounds, field_of_view: f32) -> PerspectiveView {
     let radius = bounds.radius().max(1e-4);
     let distance = 1.25 * radius / (0.5 * field_of_view.to_radians()).sin();
     let eye = bounds.center() + Vec3::new(-0.45, 0.28, 1.0).normalize() * distance;
-    view(eye, bounds.center(), field_of_view, (distance - radius).max(0.02 * radius) * 0.2, distance + 2.0 * radius)
+    view(
+        eye,
+        bounds.center(),
+        field_of_view,
+        (distance - radius).max(0.02 * radius) * 0.2,
+        distance + 2.0 * radius,
+    )
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A lit scene on the GPU, with everything that a system of light shafts is given by an engine.
 
-use crate::core::{Camera, CameraError, Light, LightError, MeshBuffers, PerspectiveView, Pictures, Raster, Sky};
+use crate::core::{
+    Camera, CameraError, Light, LightError, MeshBuffers, PerspectiveView, Pictures, Raster, Sky,
+};
 use crate::data::{Bounds, Mesh};
 use crate::gpu::Gpu;
 use crate::pass::PassError;

@@ -23,6 +23,7 @@ const COVERED: [(&str, &[&str]); 7] = [
         &[
             "ndc_from_pixel",
             "view_ray",
+            "perspective_ray",
             "distance_from_depth",
             "matrix_row",
             "side_normal",
@@ -39,12 +40,14 @@ const COVERED: [(&str, &[&str]); 7] = [
             "sine_cosine",
             "rotate",
             "series_at",
+            "series_first",
             "series_next",
             "coefficients",
             "coefficients_lanczos",
             "coefficient_scale",
             "stored_from_basis",
             "basis_from_stored",
+            "surface_bias",
         ],
     ),
     ("light", &["shadow_position", "shadow_point"]),
@@ -98,7 +101,7 @@ fn depths() -> Vec<f32> {
 #[test]
 fn bases_are_sines_and_cosines() {
     let probe = Probe {
-        head: "#import airlight::core::fourier_basis::{series_at, series_next, sine_cosine, rotate}",
+        head: "#import airlight::core::fourier_basis::{series_at, series_first, series_next, sine_cosine, rotate}",
         body: "for (var g = 0u; g < 32u; g++) {
                    let s = series_at(input(0u), g);
                    for (var k = 0u; k < 4u; k++) { output(4u * g + k, s.basis[k]); }
@@ -110,13 +113,18 @@ fn bases_are_sines_and_cosines() {
                }
                let a = sine_cosine(input(0u) * 100.0 - 50.0);
                let b = rotate(sine_cosine(input(0u)), sine_cosine(0.25));
-               output(256u, a.x); output(257u, a.y); output(258u, b.x); output(259u, b.y);",
+               output(256u, a.x); output(257u, a.y); output(258u, b.x); output(259u, b.y);
+               s = series_first(input(0u));
+               for (var g = 0u; g < 32u; g++) {
+                   for (var k = 0u; k < 4u; k++) { output(260u + 4u * g + k, s.basis[k]); }
+                   s = series_next(s);
+               }",
         inputs: 1,
-        outputs: 260,
+        outputs: 388,
     };
     let depths = depths();
     let found = probe.run(&depths);
-    let records = || depths.iter().zip(found.chunks_exact(260)).map(|(z, found)| (f(*z), found));
+    let records = || depths.iter().zip(found.chunks_exact(388)).map(|(z, found)| (f(*z), found));
     for group in [0, 1, 3, 7, 15, 31] {
         // The argument is rounded once: half a unit in the last place of the number of half turns.
         let frequency = f64::from(4 * group as u32 + 3);
@@ -130,6 +138,8 @@ fn bases_are_sines_and_cosines() {
         };
         hold(&format!("series_at, group {group}"), error(0), budget);
         hold(&format!("series_next, group {group}"), error(128), 1e-6 + 4e-7 * group as f64 * PI);
+        // The turn is four times the first angle, error included.
+        hold(&format!("series_first, group {group}"), error(260), 1e-6 + 8e-7 * group as f64 * PI);
     }
     let turns = worst(records().flat_map(|(z, found)| {
         let angle = PI * f((z as f32) * 100.0 - 50.0);
@@ -183,20 +193,29 @@ fn coefficients_and_series_are_those_of_the_reference() {
     for m in [4_u32, 8, 12, 16, 32, 64, 100, 128] {
         let found = series(m, &pairs);
         let count = m as usize;
-        for (window, offset, name) in [(fourier::Window::None, 0, "plain"), (fourier::Window::Lanczos, 128, "Lanczos")] {
+        for (window, offset, name) in
+            [(fourier::Window::None, 0, "plain"), (fourier::Window::Lanczos, 128, "Lanczos")]
+        {
             let records = || pairs.iter().zip(found.chunks_exact(260));
             let coefficients = worst(records().flat_map(|(pair, found)| {
                 let expected = fourier::coefficients(count, f(pair[0]), window);
-                found[offset..offset + count].iter().map(|x| f(*x)).collect::<Vec<_>>().into_iter().zip(expected)
+                found[offset..offset + count]
+                    .iter()
+                    .map(|x| f(*x))
+                    .collect::<Vec<_>>()
+                    .into_iter()
+                    .zip(expected)
             }));
             hold(&format!("coefficients, {name}, {m} bases"), coefficients, 1e-6);
             let at = 256 + usize::from(offset > 0);
-            let sums = worst(records().map(|(pair, found)| {
-                (f(found[at]), fourier::series(count, f(pair[0]), f(pair[1]), window))
-            }));
+            let sums =
+                worst(records().map(|(pair, found)| {
+                    (f(found[at]), fourier::series(count, f(pair[0]), f(pair[1]), window))
+                }));
             hold(&format!("series, {name}, {m} bases"), sums, 1e-5);
         }
-        let scale = found[258..260].iter().zip([m - 3, m - 1]).map(|(s, n)| (f(*s), 2.0 / (PI * f64::from(n))));
+        let scale =
+            found[258..260].iter().zip([m - 3, m - 1]).map(|(s, n)| (f(*s), 2.0 / (PI * f64::from(n))));
         hold(&format!("coefficient_scale, {m} bases"), worst(scale), 1e-7);
     }
 }
@@ -216,7 +235,8 @@ fn errors_on_a_plane_are_those_of_the_table() {
         let found = series(m, &rays);
         let mean = |at: usize| {
             let errors = rays.iter().zip(found.chunks_exact(260));
-            errors.map(|(r, found)| (f(found[at]) - fourier::visibility(f(r[0]), 0.5)).abs()).sum::<f64>() / 8000.0
+            errors.map(|(r, found)| (f(found[at]) - fourier::visibility(f(r[0]), 0.5)).abs()).sum::<f64>()
+                / 8000.0
         };
         let (plain, windowed) = (mean(256), mean(257));
         println!("{m} bases on a plane: {plain:.4} plain, {windowed:.4} Lanczos");
@@ -231,20 +251,25 @@ fn errors_on_a_plane_are_those_of_the_table() {
 #[test]
 fn the_guard_keeps_rays_from_both_ends() {
     let probe = Probe {
-        head: "#import airlight::core::fourier_basis::{guarded, GUARD}",
-        body: "output(0u, guarded(input(0u))); output(1u, GUARD);",
+        head: "#import airlight::core::fourier_basis::{guarded, GUARD, surface_bias}",
+        body: "output(0u, guarded(input(0u))); output(1u, GUARD);
+               output(2u, surface_bias(4u)); output(3u, surface_bias(32u)); output(4u, surface_bias(128u));",
         inputs: 1,
-        outputs: 2,
+        outputs: 5,
     };
     let mut inputs: Vec<f32> = (-100..=200).map(|i| i as f32 / 100.0).collect();
     inputs.extend([-1e30, 1e30, -0.06, 1.06]);
     let found = probe.run(&inputs);
-    let error = worst(inputs.iter().zip(found.chunks_exact(2)).map(|(unit, found)| {
+    let error = worst(inputs.iter().zip(found.chunks_exact(5)).map(|(unit, found)| {
         assert_eq!(found[1], 0.05);
+        // Half the softened edge, and never the whole guard.
+        assert!(worst([0.04, 0.01875, 0.0046875].iter().zip(&found[2..]).map(|(e, b)| (*e, f(*b)))) < 1e-8);
         (f(found[0]), (0.05 + 0.9 * f(*unit)).clamp(0.0, 1.0))
     }));
     hold("guarded", error, 1.5e-7);
-    for (unit, found) in inputs.iter().zip(found.chunks_exact(2)).filter(|(unit, _)| (0.0..=1.0).contains(*unit)) {
+    for (unit, found) in
+        inputs.iter().zip(found.chunks_exact(5)).filter(|(unit, _)| (0.0..=1.0).contains(*unit))
+    {
         assert!((0.05 - 1e-7..=0.95 + 1e-7).contains(&f(found[0])), "{unit}");
     }
 }
@@ -270,9 +295,12 @@ fn phase_functions_are_those_of_the_reference() {
     cosines.extend((1..=24).flat_map(|i| [1.0 - 0.5_f32.powi(i), 0.5_f32.powi(i) - 1.0]));
     let pairs: Vec<f32> = MEAN_COSINES.iter().flat_map(|g| cosines.iter().flat_map(|c| [*c, *g])).collect();
     let found = henyey_greenstein(&pairs);
-    let error = worst(pairs.chunks_exact(2).zip(found.chunks_exact(2)).map(|(pair, found)| {
-        (f(found[0]) / phase::henyey_greenstein(f(pair[0]), f(pair[1])), 1.0)
-    }));
+    let error = worst(
+        pairs
+            .chunks_exact(2)
+            .zip(found.chunks_exact(2))
+            .map(|(pair, found)| (f(found[0]) / phase::henyey_greenstein(f(pair[0]), f(pair[1])), 1.0)),
+    );
     hold("henyey_greenstein, relative", error, 2e-6);
     hold("isotropic, relative", (f(found[1]) / phase::isotropic() - 1.0).abs(), 1e-7);
     // Cosines that rounding has carried out of range, and means beyond the clamp, stay finite.
@@ -311,7 +339,7 @@ fn phase_functions_are_normalised_with_mean_cosine_g() {
 // Cameras.
 
 const CAMERA: &str = "#import airlight::core::camera::{
-        Camera, view_ray, ndc_from_pixel, distance_from_depth, matrix_row, side_normal, forward_direction,
+        Camera, view_ray, perspective_ray, ndc_from_pixel, distance_from_depth, matrix_row, side_normal, forward_direction,
         far_plane_distance
     }
     fn matrix_at(first: u32) -> mat4x4<f32> {
@@ -355,6 +383,9 @@ fn rays_distances_and_planes_of_perspective_cameras() {
                let ray = view_ray(camera, ndc);
                output_vector(0u, ray.origin);
                output_vector(3u, ray.direction);
+               let same = perspective_ray(camera, ndc);
+               output_vector(30u, same.origin);
+               output_vector(33u, same.direction);
                output(6u, distance_from_depth(camera, ray, ndc, input(42u), 500.0));
                output(7u, distance_from_depth(camera, ray, ndc, camera.far_depth, 500.0));
                output(8u, ndc.x); output(9u, ndc.y);
@@ -364,7 +395,7 @@ fn rays_distances_and_planes_of_perspective_cameras() {
                output_vector(26u, matrix_row(camera.clip_from_world, 1u).xyz);
                output(29u, matrix_row(camera.clip_from_world, 1u).w);",
         inputs: 43,
-        outputs: 30,
+        outputs: 36,
     };
     let viewport = [96_usize, 64];
     let mut random = Random(17);
@@ -383,12 +414,13 @@ fn rays_distances_and_planes_of_perspective_cameras() {
     let found = probe.run(&inputs);
     // The greatest error of each kind in units of its budget.
     let mut errors = [0.0_f64; 7];
-    for ((camera, ndc, direction, distance), found) in cases.iter().zip(found.chunks_exact(30)) {
+    for ((camera, ndc, direction, distance), found) in cases.iter().zip(found.chunks_exact(36)) {
         let mut note = |kind: usize, error: f64, budget: f64| {
             if !(error / budget <= errors[kind]) {
                 errors[kind] = error / budget;
             }
         };
+        assert_eq!(found[..6], found[30..36], "perspective_ray");
         assert_eq!(triple(&found[0..3]), gpu::vector(gpu::host_vector(camera.eye)));
         // The far plane is unprojected and the eye taken off: with forward depth the terms that cancel
         // are as large as the eye's distance from the origin over that of the near plane.
@@ -398,7 +430,11 @@ fn rays_distances_and_planes_of_perspective_cameras() {
         // A depth is as good as f32 resolves it: near 1, forward depth by 6e-8.
         let slant = direction.dot(camera.forward);
         let depth = if camera.far_depth > 0.5 { 4e-7 * distance * distance / camera.near } else { 0.0 };
-        note(2, (f(found[6]) - distance).abs(), 2e-6 * (distance + camera.eye.length()) + depth * slant.max(0.1) + 1e-5);
+        note(
+            2,
+            (f(found[6]) - distance).abs(),
+            2e-6 * (distance + camera.eye.length()) + depth * slant.max(0.1) + 1e-5,
+        );
         // The same at the far plane; beyond the limit the limit stands, exactly.
         let plane = if camera.far_depth > 0.5 { 1e-6 * camera.far / camera.near } else { 1e-5 };
         let sky = camera.far / slant;
@@ -417,10 +453,17 @@ fn rays_distances_and_planes_of_perspective_cameras() {
         let row = row.iter().zip(&found[26..30]).map(|(r, f)| (f64::from(*f) - r).abs() / (1.0 + r.abs()));
         note(6, row.fold(0.0, f64::max), 1e-7);
     }
-    for (kind, error) in
-        ["view_ray", "ndc_from_pixel", "distance_from_depth", "of the far plane", "far_plane_distance", "normals", "matrix_row"]
-            .iter()
-            .zip(errors)
+    for (kind, error) in [
+        "view_ray",
+        "ndc_from_pixel",
+        "distance_from_depth",
+        "of the far plane",
+        "far_plane_distance",
+        "normals",
+        "matrix_row",
+    ]
+    .iter()
+    .zip(errors)
     {
         hold(&format!("{kind}, in budgets"), error, 1.0);
     }
@@ -537,7 +580,13 @@ fn points_go_to_the_shadow_map_and_back() {
     let found = probe.run(&inputs);
     let (mut forth, mut back) = (0.0_f64, 0.0_f64);
     for ((matrix, point, half), found) in cases.iter().zip(found.chunks_exact(6)) {
-        let map = scattering::ShadowMap { depth: &[], width: 512, height: 256, clip_from_world: *matrix, far_depth: 1.0 };
+        let map = scattering::ShadowMap {
+            depth: &[],
+            width: 512,
+            height: 256,
+            clip_from_world: *matrix,
+            far_depth: 1.0,
+        };
         let [x, y, z] = map.project(*point);
         let scale = 1.0 + point.length() / half;
         let texels = (f(found[0]) - x).abs().max((f(found[1]) - y).abs()) / 512.0;
@@ -603,7 +652,14 @@ fn what_is_not_finite_is_replaced() {
         inputs: 1,
         outputs: 5,
     };
-    let wild = [f32::NAN, -f32::NAN, f32::from_bits(0x7f80_0001), f32::from_bits(0xffff_ffff), f32::INFINITY, f32::NEG_INFINITY];
+    let wild = [
+        f32::NAN,
+        -f32::NAN,
+        f32::from_bits(0x7f80_0001),
+        f32::from_bits(0xffff_ffff),
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+    ];
     let fine = [0.0, -0.0, 1.0, -1.5, f32::MAX, f32::MIN, f32::MIN_POSITIVE, 1e-30];
     let subnormal = [f32::from_bits(1), f32::from_bits(0x8000_0001), f32::from_bits(0x007f_ffff)];
     let inputs: Vec<f32> = wild.into_iter().chain(fine).chain(subnormal).collect();
@@ -643,10 +699,11 @@ fn colours_follow_their_closed_forms() {
         (f(found[0]), if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 })
     }));
     hold("srgb_from_linear", srgb, 5e-6);
-    let tone = worst(inputs.iter().zip(found.chunks_exact(4)).filter(|(x, _)| **x < 1e4).map(|(x, found)| {
-        let x = f(*x);
-        (f(found[1]), ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0))
-    }));
+    let tone =
+        worst(inputs.iter().zip(found.chunks_exact(4)).filter(|(x, _)| **x < 1e4).map(|(x, found)| {
+            let x = f(*x);
+            (f(found[1]), ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0))
+        }));
     hold("tone_curve", tone, 1e-6);
     let luminance = worst(inputs.iter().zip(found.chunks_exact(4)).map(|(x, found)| {
         let expected = 0.2126 * f(*x) + 0.7152 * 0.5 + 0.0722 * 0.25;
@@ -733,7 +790,13 @@ fn scans_of_any_length_are_exact() {
         let mut expected = prefix_sum::exclusive(&values[..length]);
         expected.extend(&values[length..]);
         let wrong = found.iter().zip(&expected).position(|(f, e)| f != e);
-        assert_eq!(wrong, None, "length {length}: {:?} instead of {:?}", wrong.map(|i| found[i]), wrong.map(|i| expected[i]));
+        assert_eq!(
+            wrong,
+            None,
+            "length {length}: {:?} instead of {:?}",
+            wrong.map(|i| found[i]),
+            wrong.map(|i| expected[i])
+        );
     }
 }
 

@@ -177,13 +177,16 @@ fn shared_structs() -> Vec<(String, StructLayout)> {
         for permutation in library.permutations(&pass.name).unwrap() {
             let reflection = library.compose(&pass.name, &permutation.definitions).unwrap().reflect();
             for binding in &reflection.bindings {
-                let (BindingKind::Uniform { ty, .. } | BindingKind::Storage { ty, .. }) = &binding.kind else {
+                let (BindingKind::Uniform { ty, .. } | BindingKind::Storage { ty, .. }) = &binding.kind
+                else {
                     continue;
                 };
                 let place = format!("{}:{} binding {}", pass.name, permutation.name, binding.name);
                 match (reflection.layout(ty), &binding.kind) {
                     (Some(layout), _) => found.push((place, layout.clone())),
-                    (None, BindingKind::Uniform { .. }) => panic!("{place}: uniform of {ty}, which is no struct"),
+                    (None, BindingKind::Uniform { .. }) => {
+                        panic!("{place}: uniform of {ty}, which is no struct")
+                    }
                     (None, _) => {}
                 }
             }
@@ -202,7 +205,8 @@ fn every_shared_struct_has_a_twin_with_the_same_layout() {
             continue;
         }
         let twin = twins.get(layout.name.as_str());
-        let twin = twin.unwrap_or_else(|| panic!("{place}: the struct {} has no Rust twin here", layout.name));
+        let twin =
+            twin.unwrap_or_else(|| panic!("{place}: the struct {} has no Rust twin here", layout.name));
         assert_eq!(difference(&layout, twin), None, "{place}");
         // Uniforms are bound whole: WGSL's alignment of structs is 16.
         assert_eq!(twin.size % 16, 0, "{place}");

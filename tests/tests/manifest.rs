@@ -12,7 +12,10 @@ fn the_committed_manifest_is_fresh() {
     let fresh = manifest::render(&Library::builtin()).unwrap();
     let different = committed.lines().zip(fresh.lines()).enumerate().find(|(_, (old, new))| old != new);
     if let Some((line, (old, new))) = different {
-        panic!("wgsl/manifest.json:{}: `{old}` should be `{new}`; run `airlight-validate manifest`", line + 1);
+        panic!(
+            "wgsl/manifest.json:{}: `{old}` should be `{new}`; run `airlight-validate manifest`",
+            line + 1
+        );
     }
     assert!(
         committed.trim_end() == fresh.trim_end(),

@@ -43,12 +43,14 @@ fn shaders() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 /// Import paths that a source names, items taken off, in any of naga_oil's spellings.
 fn imported(source: &str) -> BTreeSet<String> {
-    let code: String = source.lines().map(|line| line.split("//").next().unwrap().to_owned() + "\n").collect();
+    let code: String =
+        source.lines().map(|line| line.split("//").next().unwrap().to_owned() + "\n").collect();
     code.match_indices("airlight::")
         .filter(|(at, _)| !code[..*at].ends_with("#define_import_path "))
         .map(|(at, _)| {
             let rest = &code[at..];
-            let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).unwrap_or(rest.len());
+            let end =
+                rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).unwrap_or(rest.len());
             rest[..end].split("::").take(3).collect::<Vec<_>>().join("::")
         })
         .collect()
@@ -97,7 +99,11 @@ fn imports_are_those_of_the_source_and_listed_earlier() {
         assert_eq!(listed, imported(module.source), "{}", module.file);
         for import in module.imports {
             let at = MODULES.iter().position(|other| other.path == *import);
-            assert!(at.is_some_and(|at| at < index), "{} imports {import}, which is not listed before it", module.path);
+            assert!(
+                at.is_some_and(|at| at < index),
+                "{} imports {import}, which is not listed before it",
+                module.path
+            );
         }
     }
     let known: BTreeSet<String> = MODULES.iter().map(|module| module.path.to_owned()).collect();
@@ -190,13 +196,19 @@ fn every_binding_and_definition_is_explained() {
         definitions.remove("GROUP");
         let explained = |key: &str| -> BTreeSet<&str> {
             let lines = header(source, key);
-            lines.iter().map(|line| entry(line).unwrap_or_else(|| panic!("{file}: `// {key}{line}`"))).collect()
+            lines
+                .iter()
+                .map(|line| entry(line).unwrap_or_else(|| panic!("{file}: `// {key}{line}`")))
+                .collect()
         };
         assert_eq!(bindings, explained("binding "), "{file}: bindings declared and explained");
         assert_eq!(definitions, explained("definition "), "{file}: definitions used and explained");
         let module = !file.contains("/passes/");
         assert!(!module || bindings.is_empty(), "{file}: an algorithm module holds resources");
-        assert!(!module || !source.contains("\n@compute") && !source.contains("\n@fragment"), "{file}: entry points");
+        assert!(
+            !module || !source.contains("\n@compute") && !source.contains("\n@fragment"),
+            "{file}: entry points"
+        );
     }
 }
 
@@ -228,7 +240,10 @@ fn every_function_and_member_of_a_module_is_documented() {
                     name.starts_with("reserved") || private || documented(index),
                     "{place}: member `{name}` of `{inside}` lacks `///`"
                 );
-                assert!(!name.ends_with(|c: char| c.is_ascii_digit()), "{place}: naga appends `_` to `{name}`");
+                assert!(
+                    !name.ends_with(|c: char| c.is_ascii_digit()),
+                    "{place}: naga appends `_` to `{name}`"
+                );
             }
         }
     }
@@ -248,8 +263,10 @@ fn a_composer_is_filled_in_five_lines() {
     }
     for pass in PASSES {
         let definitions = [("GROUP", 1), ("BASES", 32), ("BASES_PER_THREAD", 8)];
-        let shader_defs: HashMap<_, _> =
-            definitions.iter().map(|(name, value)| ((*name).to_owned(), ShaderDefValue::Int(*value))).collect();
+        let shader_defs: HashMap<_, _> = definitions
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), ShaderDefValue::Int(*value)))
+            .collect();
         let descriptor = NagaModuleDescriptor {
             source: pass.source,
             file_path: pass.file,

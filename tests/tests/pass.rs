@@ -65,7 +65,15 @@ fn an_unknown_name_lists_what_the_pass_expects() {
     let error = fixture.pass.bind(gpu(), &resources).err().unwrap();
     assert!(matches!(&error, PassError::UnknownBinding { name, .. } if name == "radiancy"));
     let text = error.to_string();
-    for part in ["core/tonemap", "`radiancy`", "`parameters`", "TonemapParameters", "16 bytes", "`radiance`", "rgba8unorm"] {
+    for part in [
+        "core/tonemap",
+        "`radiancy`",
+        "`parameters`",
+        "TonemapParameters",
+        "16 bytes",
+        "`radiance`",
+        "rgba8unorm",
+    ] {
         assert!(text.contains(part), "{text} lacks {part}");
     }
 }
@@ -80,7 +88,10 @@ fn a_missing_name_lists_what_the_pass_expects() {
             let error = error.err().unwrap();
             assert!(matches!(&error, PassError::MissingBinding { name: missing, .. } if missing == name));
             let text = error.to_string();
-            assert!(text.contains(&format!("needs the binding `{name}`")) && text.contains("TonemapParameters"), "{text}");
+            assert!(
+                text.contains(&format!("needs the binding `{name}`")) && text.contains("TonemapParameters"),
+                "{text}"
+            );
         }
     }
 }
@@ -172,7 +183,10 @@ fn samplers_are_told_apart() {
     let wrong = RenderStages { fragment: Some("fragment_sky"), ..stages };
     let error = Pass::render(gpu(), &composed, &wrong).err().unwrap();
     let text = error.to_string();
-    assert!(matches!(error, PassError::UnknownEntryPoint { .. }) && text.contains("fragment_background"), "{text}");
+    assert!(
+        matches!(error, PassError::UnknownEntryPoint { .. }) && text.contains("fragment_background"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -181,7 +195,10 @@ fn an_unknown_entry_point_pass_or_permutation_lists_the_known_ones() {
     let bound = fixture.pass.bind(gpu(), &fixture.fitting()).unwrap();
     let mut encoder = gpu().encoder();
     let error = fixture.pass.dispatch_groups(&mut encoder, &bound, "tonemapping", [1, 1, 1]).err().unwrap();
-    assert!(error.to_string().contains("`tonemapping`") && error.to_string().contains("has tonemap"), "{error}");
+    assert!(
+        error.to_string().contains("`tonemapping`") && error.to_string().contains("has tonemap"),
+        "{error}"
+    );
     let error = Pass::compute(gpu(), shaders(), "core/tonemapping", "default").err().unwrap().to_string();
     assert!(error.contains("core/tonemapping") && error.contains("scattering/filter"), "{error}");
     let error = Pass::compute(gpu(), shaders(), "scattering/filter", "huge").err().unwrap().to_string();
@@ -193,8 +210,18 @@ fn a_broken_shader_names_its_own_file_and_line() {
     for (file, old, new, line_of) in [
         // In a module that the pass imports, and in the pass itself.
         ("core/color.wgsl", "return dot(color,", "return dott(color,", "dott"),
-        ("core/color.wgsl", "let x = clamp(color, vec3<f32>(0.0), vec3<f32>(1e4));", "let x = 1u;", "x * (2.51"),
-        ("core/passes/tonemap.wgsl", "textureStore(picture, id.xy,", "textureStore(picture, id.x,", "textureStore"),
+        (
+            "core/color.wgsl",
+            "let x = clamp(color, vec3<f32>(0.0), vec3<f32>(1e4));",
+            "let x = 1u;",
+            "x * (2.51",
+        ),
+        (
+            "core/passes/tonemap.wgsl",
+            "textureStore(picture, id.xy,",
+            "textureStore(picture, id.x,",
+            "textureStore",
+        ),
         ("core/passes/tonemap.wgsl", "core::finite::finite_or_rgb", "core::finit::finite_or_rgb", "finit::"),
     ] {
         let folder = gpu::copy_of_wgsl();

@@ -102,10 +102,7 @@ fn frame_and_slices_are_those_of_the_reference() {
     const ROWS: usize = 64;
     let limit = 80.0_f64;
     let map = Rectification::new(gpu(), shaders(), [8, ROWS as u32]).unwrap();
-    let (depth, shadow) = (
-        gpu::texture([1, 1], R32Float, &[1.0]),
-        gpu::texture([1, 1], R32Float, &[1.0]),
-    );
+    let (depth, shadow) = (gpu::texture([1, 1], R32Float, &[1.0]), gpu::texture([1, 1], R32Float, &[1.0]));
     let medium = Medium::new(0.1, Vec3::ONE, 0.0, limit as f32).unwrap();
     let mut random = Random(11);
     let camera = random.camera(1.5);
@@ -128,7 +125,12 @@ fn frame_and_slices_are_those_of_the_reference() {
     for index in 0..200 {
         let aspect = random.between(0.5, 2.5);
         let camera = random.camera(aspect);
-        let light = random.light(&camera);
+        let mut light = random.light(&camera);
+        if random.unit() < 0.1 {
+            // Barely outside of the picture, where some slices miss it.
+            let corner = camera.corners()[random.below(4)];
+            light = camera.forward + (corner - camera.forward) * random.between(1.0, 1.001);
+        }
         camera_buffer.write(gpu(), &gpu::host_camera(&camera, [96, 64]));
         let matrix = gpu::light_matrix(light, camera.eye, 20.0, 1.0);
         light_buffer.write(gpu(), &gpu::host_light(light, matrix, 1.0, Vec3::ONE));
@@ -156,11 +158,9 @@ fn frame_and_slices_are_those_of_the_reference() {
         circles += usize::from(expected.full_circle);
         // Axes: f32 over the length that is normalised.
         let axes = if off_axis < 1e-3 { 1e-5 } else { 1e-6 + 1e-6 / off_axis };
-        for (found, wanted) in [
-            (axis(0), expected.frame.l),
-            (axis(4), expected.frame.a),
-            (axis(8), expected.frame.b),
-        ] {
+        for (found, wanted) in
+            [(axis(0), expected.frame.l), (axis(4), expected.frame.a), (axis(8), expected.frame.b)]
+        {
             worst[0] = worst[0].max((found - wanted).length() / axes);
         }
         assert!((axis(12) - camera.eye).length() < 1e-5);
@@ -171,7 +171,7 @@ fn frame_and_slices_are_those_of_the_reference() {
             .map(|d| expected.frame.polar_direction(d).theta.sin())
             .into_iter()
             .fold(1.0, f64::min);
-        let turn = axes + if expected.full_circle { 1e-6 } else { 2e-6 / closest.max(1e-6) };
+        let turn = axes + if expected.full_circle { 1e-6 } else { 3e-6 / closest.max(1e-6) };
         let rows = expected.slices.len();
         for j in 0..rows {
             let azimuth = at(3) + j as f64 / at(7);
@@ -207,7 +207,11 @@ fn frame_and_slices_are_those_of_the_reference() {
             worst[2] = worst[2].max(error / angle);
             if !missed {
                 // The far plane as f32 matrices hold it, and the angle of the rays that reach it.
-                let plane = if camera.far.is_finite() && camera.far_depth > 0.5 { camera.far / camera.near } else { 1.0 };
+                let plane = if camera.far.is_finite() && camera.far_depth > 0.5 {
+                    camera.far / camera.near
+                } else {
+                    1.0
+                };
                 let slant = camera.corners().map(|d| d.dot(camera.forward)).into_iter().fold(1.0, f64::min);
                 let steep = slice.theta_min.sin().min(slice.theta_max.sin()).max(1e-3);
                 let radius = 1e-6 * plane + 1e-5 + angle / slant / steep;
@@ -234,9 +238,11 @@ fn rectified_maps_are_those_of_the_reference() {
         ("foliage", &foliage().stage, foliage().view, &foliage().map),
         ("plane", &plane().stage, plane().view, &plane().map),
     ];
-    let small = [(torus.stage(PICTURE, [512, 512]), torus.view), (tree.stage(PICTURE, [512, 512]), tree.view)]
-        .map(|(stage, view)| (rectified(&stage.inputs(), [512, 256]), stage, view));
-    let small = small.iter().zip(["torus", "tree"]).map(|((map, stage, view), name)| (name, stage, *view, map));
+    let small =
+        [(torus.stage(PICTURE, [512, 512]), torus.view), (tree.stage(PICTURE, [512, 512]), tree.view)]
+            .map(|(stage, view)| (rectified(&stage.inputs(), [512, 256]), stage, view));
+    let small =
+        small.iter().zip(["torus", "tree"]).map(|((map, stage, view), name)| (name, stage, *view, map));
     for (name, stage, view, map) in cases.into_iter().chain(small) {
         let camera = gpu::reference_camera(&view, PICTURE);
         let rectification = gpu::read_back(&camera, stage.light.direction, stage.medium.distance_limit, map);
@@ -300,7 +306,8 @@ fn nearest_row(case: &Case) -> (Vec<f64>, Vec<f64>) {
         (0..width)
             .map(|x| {
                 let (direction, distance) = scene.view_ray(x, y);
-                let (first, second, share) = rectification.rows(rectification.frame.polar_direction(direction).phi);
+                let (first, second, share) =
+                    rectification.rows(rectification.frame.polar_direction(direction).phi);
                 let j = if share >= 0.5 { second } else { first };
                 let row = &map[j * rectification.width..(j + 1) * rectification.width];
                 reference::row_visibility(
@@ -439,7 +446,9 @@ fn an_empty_shadow_map_lights_everything_and_a_slab_has_its_closed_form() {
                 .zip(&expected)
                 .map(|(f, e)| (f64::from(*f) / e - 1.0).abs())
                 .fold(0.0, f64::max);
-            println!("slab g {g}, {name}, weighted {weighted}: visibility off by {visibility:.1e}, radiance {radiance:.1e}");
+            println!(
+                "slab g {g}, {name}, weighted {weighted}: visibility off by {visibility:.1e}, radiance {radiance:.1e}"
+            );
             assert!(visibility <= budget, "{name}: {visibility}");
             assert!(radiance <= budget + 1e-3, "{name}: {radiance}");
         }
@@ -495,7 +504,9 @@ fn average_visibility_on_foliage_falls_with_the_bases_to_its_figure() {
         let half = Settings { bases, format: BasisFormat::Rgba16Float, ..Settings::default() };
         let half = average_error(foliage(), half);
         let plain = average_error(foliage(), Settings { bases, window: false, ..Settings::default() });
-        println!("foliage, {bases} bases: {found:.5} rgba8unorm, {half:.5} rgba16float, {plain:.5} without window");
+        println!(
+            "foliage, {bases} bases: {found:.5} rgba8unorm, {half:.5} rgba16float, {plain:.5} without window"
+        );
         figures.push((bases, found, half, previous));
         previous = found;
     }
@@ -533,7 +544,8 @@ fn radiance_reaches_its_figures() {
         for map in [[512, 512], [1024, 1024]] {
             let case = Case::new(name, PICTURE, map);
             let found = radiance_error(&case, map);
-            let rows = marched(&case.stage.inputs(), &Along::Rows(&case.map), Weighting::Transmittance, PICTURE);
+            let rows =
+                marched(&case.stage.inputs(), &Along::Rows(&case.map), Weighting::Transmittance, PICTURE);
             let rows = error::relative_rmse(&rows.radiance, &case.exact.radiance());
             println!(
                 "{name}, map {}x{}: relative RMSE {:.2} % of at most {:.0} %; marched row {:.2} %",
@@ -599,7 +611,8 @@ fn wild(random: &mut Random, picture: [u32; 2]) -> Wild {
     });
     let light = random.light(&camera);
     // Next to a pole, but not at it.
-    let light = if random.unit() < 0.2 { light + random.direction() * random.magnitude(1e-8, 1e-2) } else { light };
+    let light =
+        if random.unit() < 0.2 { light + random.direction() * random.magnitude(1e-8, 1e-2) } else { light };
     let far_depth = if random.unit() < 0.5 { 1.0 } else { 0.0 };
     let centre = if random.unit() < 0.8 { eye } else { random.direction() * 100.0 };
     let matrix = gpu::light_matrix(light, centre, random.magnitude(0.1, 1e3), far_depth);
@@ -634,10 +647,10 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let medium = Buffer::uniform(gpu(), &first.medium);
     let depth = gpu::texture(PICTURE, R32Float, &[1.0; PIXELS]);
     let shadow_map = gpu::texture(SHADOW, R32Float, &[1.0; 64]);
-    let inputs = Inputs { camera: &camera, light: &light, medium: &medium, depth: &depth, shadow_map: &shadow_map };
+    let inputs =
+        Inputs { camera: &camera, light: &light, medium: &medium, depth: &depth, shadow_map: &shadow_map };
     let defaults = Settings { bases: 8, map: MAP, format: BasisFormat::Rgba16Float, ..Settings::default() };
-    let plain =
-        Settings { window: false, epipole_march: false, weighting: Weighting::Average, ..defaults };
+    let plain = Settings { window: false, epipole_march: false, weighting: Weighting::Average, ..defaults };
     // Cases take turns: with everything and along rows, plain and through the shadow map.
     let methods =
         [defaults, plain].map(|settings| Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap());
@@ -694,7 +707,15 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
         }
         let bytes = store.read(gpu()).unwrap();
         for (index, (case, bytes)) in cases.iter().zip(bytes.chunks_exact(stride)).enumerate() {
-            let name = || format!("case {}: {:?} {:?} {:?}", batch * BATCH + index, case.camera, case.light, case.medium);
+            let name = || {
+                format!(
+                    "case {}: {:?} {:?} {:?}",
+                    batch * BATCH + index,
+                    case.camera,
+                    case.light,
+                    case.medium
+                )
+            };
             let mut offset = 0;
             for (which, (texture, rows)) in pictures[index % 2].iter().zip(rows).enumerate() {
                 let columns = texture.size()[0] as usize;
@@ -740,6 +761,31 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     assert!((0.2..0.95).contains(&share), "the random cases are not varied enough: {share}");
 }
 
+#[test]
+fn depths_that_are_not_finite_count_as_empty_and_far() {
+    let _turn = gpu::turn();
+    let scene = gpu::small_tree();
+    let (picture, shadow) = ([60, 40], [64, 64]);
+    let mut stage = scene.stage(picture, shadow);
+    let [depths, shadows] = [&stage.pictures.depth, &stage.pictures.shadow_map].map(|t| t.read(gpu()).unwrap());
+    let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::from_bits(0xffff_ffff)];
+    // Every third texel, in both.
+    let mut pictures = [false, true].map(|wild| {
+        let with = |values: &[f32]| -> Vec<f32> {
+            let replace = |i: usize| if wild { broken[i / 3 % 4] } else { 1.0 };
+            values.iter().enumerate().map(|(i, v)| if i % 3 == 0 { replace(i) } else { *v }).collect()
+        };
+        stage.pictures.depth = gpu::texture(picture, R32Float, &with(&depths));
+        stage.pictures.shadow_map = gpu::texture(shadow, R32Float, &with(&shadows));
+        all_methods(&stage, picture, [64, 64])
+    });
+    let wild = std::mem::take(&mut pictures[1]);
+    for ((name, weighted, empty), (_, _, wild)) in pictures[0].iter().zip(wild) {
+        let worst = error::max_absolute(&wild.radiance, &empty.radiance);
+        assert!(worst == 0.0, "{name}, weighted {weighted}: radiance differs by {worst}");
+    }
+}
+
 // (g) Invariants.
 
 #[test]
@@ -774,7 +820,10 @@ fn thicker_air_scatters_more_of_a_lit_ray() {
         stage.medium_buffer.write(gpu(), &stage.medium);
         let settings = Settings { map: [64, 64], ..Settings::default() };
         let now = prefiltered(&stage.inputs(), settings, picture).radiance;
-        assert!(now.iter().zip(&before).all(|(n, b)| *n >= b * (1.0 - 2.0 / 255.0)), "extinction {extinction}");
+        assert!(
+            now.iter().zip(&before).all(|(n, b)| *n >= b * (1.0 - 2.0 / 255.0)),
+            "extinction {extinction}"
+        );
         assert!(extinction > 0.0 || now.iter().all(|n| *n == 0.0));
         before = now;
     }

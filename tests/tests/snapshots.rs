@@ -46,8 +46,7 @@ fn check(scene_name: &str, scene: &TestScene) {
     assert_buffer(&name("depth"), &buffer(&stage.pictures.depth, 0, 1, tolerance(1e-5, 0.0, 0.02)));
     assert_buffer(&name("surface"), &buffer(&stage.pictures.surface, 0, 3, tolerance(2e-3, 0.01, 0.05)));
 
-    let settings =
-        Settings { map: MAP, bases: 16, format: BasisFormat::Rgba8Unorm, ..Settings::default() };
+    let settings = Settings { map: MAP, bases: 16, format: BasisFormat::Rgba8Unorm, ..Settings::default() };
     let method = Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap();
     let bound = method.bind(gpu(), &inputs).unwrap();
     let mut encoder = gpu().encoder();
@@ -116,7 +115,10 @@ fn text_keeps_a_buffer_within_a_tenth_of_its_tolerance() {
     buffer.values[..6].copy_from_slice(&[f32::NAN, f32::INFINITY, 0.0, -0.0, 1e-9, -12345.6]);
     let text = buffer.to_text();
     let back = Buffer::from_text(&text).unwrap();
-    assert_eq!((&back.adapter, back.shape, back.tolerance), (&buffer.adapter, buffer.shape, buffer.tolerance));
+    assert_eq!(
+        (&back.adapter, back.shape, back.tolerance),
+        (&buffer.adapter, buffer.shape, buffer.tolerance)
+    );
     assert_eq!(buffer.difference(&back), None);
     let mut strict = buffer.clone();
     strict.tolerance = tolerance(1e-4, 1e-3, 0.0);
@@ -150,7 +152,8 @@ fn one_texel_too_far_off_is_named() {
 #[test]
 fn pictures_are_compared_by_structure() {
     let size = [32, 24];
-    let pixels: Vec<u8> = (0..32 * 24).flat_map(|i| [(i % 32 * 8) as u8, (i / 32 * 10) as u8, 90, 255]).collect();
+    let pixels: Vec<u8> =
+        (0..32 * 24).flat_map(|i| [(i % 32 * 8) as u8, (i / 32 * 10) as u8, 90, 255]).collect();
     let picture = Picture { size, pixels };
     assert_eq!(Picture::from_png(&picture.to_png()), Some(picture.clone()));
     let changed = |amount: u8| {
@@ -158,7 +161,11 @@ fn pictures_are_compared_by_structure() {
         other.pixels.iter_mut().step_by(3).for_each(|p| *p = p.saturating_add(amount));
         picture.similarity(&other)
     };
-    assert!(picture.similarity(&picture) > 0.9999 && changed(1) > 0.99 && changed(60) < 0.9, "{}", changed(60));
+    assert_eq!(picture.similarity(&picture).1, 0.0);
+    assert!(picture.similarity(&picture).0 > 0.9999);
+    let (little, much) = (changed(1), changed(60));
+    assert!(little.0 > 0.99 && little.1 < 1.0, "{little:?}");
+    assert!(much.0 < 0.95 && much.1 > 10.0, "{much:?}");
     assert!(Picture::from_png(b"no picture").is_none());
 }
 

@@ -41,13 +41,19 @@ fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
 }
 
-/// The view ray through `ndc`.
+/// The view ray through `ndc`, of any camera.
 fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
-    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
     if camera.projection == ORTHOGRAPHIC {
+        let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
         let near = camera.world_from_clip * vec4<f32>(ndc, camera.near_depth, 1.0);
         return Ray(near.xyz / near.w, normalize(far.xyz - near.xyz));
     }
+    return perspective_ray(camera, ndc);
+}
+
+/// The view ray through `ndc` of a perspective camera.
+fn perspective_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
+    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
     // With w = 0 (infinite far plane) far.xyz is the direction itself.
     return Ray(camera.eye, normalize(far.xyz - camera.eye * far.w));
 }
@@ -58,10 +64,18 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     let point = camera.world_from_clip * vec4<f32>(ndc, depth, 1.0);
     let along = dot(point.xyz - ray.origin * point.w, ray.direction);
     // along / w, without dividing by a w that is zero or has rounded below it.
-    if along >= limit * point.w {
-        return limit;
-    }
-    return max(along / point.w, 0.0);
+    let beyond = along >= limit * point.w;
+    return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
+}
+
+/// Like `distance_from_depth` for a perspective camera, and cheaper: on a view ray the vector from the
+/// eye, times the homogeneous w, is the same at every depth.
+fn perspective_distance(camera: Camera, ndc: vec2<f32>, depth: f32, limit: f32) -> f32 {
+    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
+    let along = length(far.xyz - camera.eye * far.w);
+    let w = dot(matrix_row(camera.world_from_clip, 3u), vec4<f32>(ndc, depth, 1.0));
+    let beyond = along >= limit * w;
+    return select(along / select(w, 1.0, beyond), limit, beyond);
 }
 
 /// Row `index` of a matrix, as a vector.

@@ -55,6 +55,13 @@ fn series_at(z: f32, group: u32) -> Series {
     return Series(vec4<f32>(first, rotate(first, double)), rotate(double, double));
 }
 
+/// The bases of group 0 at depth `z`, 0..1: one sine and cosine instead of two.
+fn series_first(z: f32) -> Series {
+    let first = sine_cosine(z);
+    let double = rotate(first, first);
+    return Series(vec4<f32>(first, rotate(first, double)), rotate(double, double));
+}
+
 /// The next group, by a rotation instead of new sines. The error grows by about 1e-7 a step.
 fn series_next(series: Series) -> Series {
     return Series(

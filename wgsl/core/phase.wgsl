@@ -21,6 +21,6 @@ fn henyey_greenstein(cosine: f32, g: f32) -> f32 {
     // (1 - g)^2 + 2 g (1 - cos) is 1 + g^2 - 2 g cos without the cancellation near the peak.
     let near = (1.0 - abs(mean)) * (1.0 - abs(mean));
     let turn = 1.0 - clamp(select(-cosine, cosine, mean >= 0.0), -1.0, 1.0);
-    let square = near + 2.0 * abs(mean) * turn;
-    return ISOTROPIC * (1.0 - mean * mean) / (square * sqrt(square));
+    let inverse = inverseSqrt(near + 2.0 * abs(mean) * turn);
+    return ISOTROPIC * (1.0 - mean * mean) * (inverse * inverse * inverse);
 }

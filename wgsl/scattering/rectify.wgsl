@@ -202,12 +202,12 @@ fn epipolar_ray(frame: Frame, direction: vec3<f32>) -> EpipolarRay {
 
 /// The two rows around a fractional `row`: indices, always inside the map.
 fn neighbour_rows(frame: Frame, row: f32) -> vec2<u32> {
-    let rows = u32(frame.rows);
-    let low = min(u32(max(row, 0.0)), rows);
-    if frame.wraps > 0.0 {
-        return vec2<u32>(low % rows, (low + 1u) % rows);
-    }
-    return min(vec2<u32>(low, low + 1u), vec2<u32>(rows - 1u));
+    let rows = vec2<u32>(u32(frame.rows));
+    let low = min(u32(max(row, 0.0)), rows.x);
+    let pair = vec2<u32>(low, low + 1u);
+    // At most one turn too far: a subtraction is cheaper than a remainder.
+    let wrapped = min(select(pair, pair - rows, pair >= rows), rows - 1u);
+    return select(min(pair, rows - 1u), wrapped, frame.wraps > 0.0);
 }
 
 /// Depth 0..1 in the rectified map of an angle to the light: view rays of the slice lie in
@@ -222,12 +222,8 @@ fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
     return clamp(depth_from_angle(slice, ray.angle), GUARD, 1.0 - GUARD);
 }
 
-/// Point on the light ray at `azimuth` and `radius` where it passes the height of the eye.
-fn light_ray_point(frame: Frame, azimuth: f32, radius: f32) -> vec3<f32> {
-    return frame.eye + radius * azimuth_direction(frame, azimuth);
-}
-
-/// Depth 0..1 in the rectified map of a blocker at `point` on the light ray with `radius`.
-fn depth_from_blocker(frame: Frame, slice: Slice, radius: f32, point: vec3<f32>) -> f32 {
-    return depth_from_angle(slice, atan2(radius, dot(point - frame.eye, frame.light)));
+/// Depth 0..1 in the rectified map of a blocker `height` metres above the eye, towards the light, on
+/// the light ray at `radius` metres.
+fn depth_from_blocker(slice: Slice, radius: f32, height: f32) -> f32 {
+    return depth_from_angle(slice, atan2(radius, height));
 }

@@ -43,14 +43,17 @@ pub enum LightSpelling {
 
 /// `directional:AZ,EL`.
 pub fn light(text: &str) -> Result<LightSpelling, String> {
-    let wrong = || format!("`{text}` is not a light such as directional:135,40 (azimuth, elevation in degrees)");
+    let wrong =
+        || format!("`{text}` is not a light such as directional:135,40 (azimuth, elevation in degrees)");
     let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
     match kind {
         "directional" => {
             let values = numbers(rest)?;
             let [azimuth, elevation] = values[..] else { return Err(wrong()) };
             if elevation.abs() > 90.0 {
-                return Err(format!("elevation {elevation} is impossible: it must be from -90 to 90 degrees"));
+                return Err(format!(
+                    "elevation {elevation} is impossible: it must be from -90 to 90 degrees"
+                ));
             }
             Ok(LightSpelling::Directional { azimuth, elevation })
         }
@@ -84,7 +87,9 @@ mod tests {
         for wrong in ["", "640", "0x5", "-1x5", "640x", "axb", "1.5x2", "99999999999x1"] {
             assert!(size(wrong).is_err(), "{wrong}");
         }
-        for wrong in ["sun", "directional", "directional:1", "directional:0,91", "spot:1,2", "directional:nan,0"] {
+        for wrong in
+            ["sun", "directional", "directional:1", "directional:0,91", "spot:1,2", "directional:nan,0"]
+        {
             assert!(light(wrong).is_err(), "{wrong}");
         }
     }

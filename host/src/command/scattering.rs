@@ -8,6 +8,7 @@ use crate::data::{Mesh, load_mesh};
 use crate::formats::{Array, ArrayData, create_folder, write_exr, write_npy, write_png};
 use crate::scattering::{
     Along, BasisFormat, Composite, March, Medium, Prefiltered, Rectification, Settings, Weighting,
+    epipole_near_picture,
 };
 use crate::{Gpu, Setting, Shaders, Stage, Texture, scenes};
 use clap::ValueEnum;
@@ -102,11 +103,17 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         return Err(CommandError::misuse("--out", format!("`{shown}` must end in .png or .exr")));
     }
     if options.exposure <= 0.0 {
-        return Err(CommandError::misuse("--exposure", format!("{} is impossible: it must be positive", options.exposure)));
+        return Err(CommandError::misuse(
+            "--exposure",
+            format!("{} is impossible: it must be positive", options.exposure),
+        ));
     }
     if options.radiance.min_element() < 0.0 || options.radiance.max_element() > 1e4 {
         let shown = options.radiance;
-        return Err(CommandError::misuse("--radiance", format!("{shown} is impossible: 0 to 1e4 is possible")));
+        return Err(CommandError::misuse(
+            "--radiance",
+            format!("{shown} is impossible: 0 to 1e4 is possible"),
+        ));
     }
     super::run::check_writable("--out", &options.out)?;
     let bar = progress::bar(4, quiet);
@@ -142,10 +149,15 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     bar.set_message("light shafts");
     let mut buffers = Vec::new();
     let scattered = match options.method {
-        Method::Fourier => fourier(&gpu, &shaders, &stage, settings, options, &mut buffers)?,
+        Method::Fourier => {
+            let epipole_march = epipole_near_picture(&stage.camera, stage.light.direction);
+            let settings = Settings { epipole_march, ..settings };
+            fourier(&gpu, &shaders, &stage, settings, options, &mut buffers)?
+        }
         Method::March => march(&gpu, &shaders, &stage, settings, options)?,
     };
-    let composed = Composite::new(&gpu, &shaders)?.run(&gpu, &stage.inputs(), &stage.pictures.surface, &scattered)?;
+    let composed =
+        Composite::new(&gpu, &shaders)?.run(&gpu, &stage.inputs(), &stage.pictures.surface, &scattered)?;
     bar.inc(1);
 
     bar.set_message("writing");

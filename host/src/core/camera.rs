@@ -161,7 +161,11 @@ mod tests {
             let forward = (view.target - view.eye).normalize();
             for (distance, expected) in [(view.near, camera.near_depth), (view.far, camera.far_depth)] {
                 let clip = camera.clip_from_world * (view.eye + forward * distance).extend(1.0);
-                assert!((clip.z / clip.w - expected).abs() < 1e-4, "{depth:?} {distance}: {}", clip.z / clip.w);
+                assert!(
+                    (clip.z / clip.w - expected).abs() < 1e-4,
+                    "{depth:?} {distance}: {}",
+                    clip.z / clip.w
+                );
             }
         }
     }

@@ -62,7 +62,8 @@ impl Light {
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;
         for corner in 0..8u32 {
-            let pick = |bit: u32, low: f32, high: f32| f64::from(if corner >> bit & 1 == 0 { low } else { high });
+            let pick =
+                |bit: u32, low: f32, high: f32| f64::from(if corner >> bit & 1 == 0 { low } else { high });
             let at = DVec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z));
             let seen = view.transform_point3(at);
             low = low.min(seen);
@@ -99,7 +100,8 @@ mod tests {
     #[test]
     fn the_box_lies_inside_and_depth_grows_away_from_the_light() {
         for towards in [Vec3::Y, Vec3::new(0.3, 0.5, -0.8), -Vec3::Y, Vec3::X] {
-            let light = Light::directional(towards, Vec3::ONE, Vec3::splat(-2.0), Vec3::new(1.0, 3.0, 2.0)).unwrap();
+            let light =
+                Light::directional(towards, Vec3::ONE, Vec3::splat(-2.0), Vec3::new(1.0, 3.0, 2.0)).unwrap();
             for corner in [Vec3::splat(-2.0), Vec3::new(1.0, 3.0, 2.0), Vec3::new(1.0, -2.0, 2.0)] {
                 let clip = light.clip_from_world * corner.extend(1.0);
                 assert!(clip.x.abs() < 1.0 && clip.y.abs() < 1.0 && clip.z > 0.0 && clip.z < 1.0);

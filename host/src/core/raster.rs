@@ -93,7 +93,13 @@ impl Raster {
         };
         Ok(Self {
             shadow: build("vertex_shadow", None, Some(VERTEX), None, less)?,
-            surface: build("vertex_surface", Some("fragment_surface"), Some(VERTEX), Some(Rgba16Float), less)?,
+            surface: build(
+                "vertex_surface",
+                Some("fragment_surface"),
+                Some(VERTEX),
+                Some(Rgba16Float),
+                less,
+            )?,
             background: build(
                 "vertex_background",
                 Some("fragment_background"),

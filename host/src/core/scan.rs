@@ -50,8 +50,11 @@ impl Scan {
         let parameters = ScanParameters { count, reserved_a: 0, reserved_b: 0, reserved_c: 0 };
         let parameters = Buffer::uniform(gpu, &parameters);
         let block_sums = Buffer::storage(gpu, u64::from(blocks) * 4);
-        let resources =
-            [("parameters", (&parameters).into()), ("values", values.into()), ("block_sums", (&block_sums).into())];
+        let resources = [
+            ("parameters", (&parameters).into()),
+            ("values", values.into()),
+            ("block_sums", (&block_sums).into()),
+        ];
         let bound = self.pass.bind(gpu, &resources)?;
         self.pass.dispatch_groups(encoder, &bound, "scan_blocks", [blocks, 1, 1])?;
         if blocks > 1 {

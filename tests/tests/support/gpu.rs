@@ -187,7 +187,10 @@ pub fn reference_medium(medium: &Medium) -> reference::Medium {
 
 /// The reference's light.
 pub fn reference_light(light: &Light) -> reference::Light {
-    reference::Light { direction: vector(light.direction), radiance: light.radiance.to_array().map(f64::from) }
+    reference::Light {
+        direction: vector(light.direction),
+        radiance: light.radiance.to_array().map(f64::from),
+    }
 }
 
 /// The reference's rectification of a camera and light, with the slices that the GPU computed.
@@ -274,7 +277,12 @@ pub fn torus_over_plane() -> TestScene {
 /// A small tree with 600 leaves; the light stands behind it, in the picture.
 pub fn small_tree() -> TestScene {
     let mut mesh = plane(Vec2::splat(16.0), 2).with_albedo(Vec3::new(0.2, 0.25, 0.1));
-    mesh.append(&tree(&TreeParameters { seed: 7, leaves: 600, leaf_length: 0.4, ..TreeParameters::default() }));
+    mesh.append(&tree(&TreeParameters {
+        seed: 7,
+        leaves: 600,
+        leaf_length: 0.4,
+        ..TreeParameters::default()
+    }));
     TestScene {
         mesh,
         view: PerspectiveView {
@@ -420,7 +428,12 @@ pub fn light_matrix(towards: linear::Vec3, centre: linear::Vec3, half: f64, far_
 }
 
 /// The uniform of a light of that matrix.
-pub fn host_light(towards: linear::Vec3, clip_from_world: linear::Mat4, far_depth: f64, radiance: Vec3) -> Light {
+pub fn host_light(
+    towards: linear::Vec3,
+    clip_from_world: linear::Mat4,
+    far_depth: f64,
+    radiance: Vec3,
+) -> Light {
     Light {
         clip_from_world: host_matrix(clip_from_world),
         world_from_clip: host_matrix(clip_from_world.inverse().unwrap()),

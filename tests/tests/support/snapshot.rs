@@ -4,7 +4,8 @@
 //! A buffer is text: a header (what it is, adapter, driver, shape, tolerance), then a line a row. On
 //! the adapter that blessed it every value must be within the tolerance; on another one a stated share
 //! of texels may be off (silhouettes fall on other pixels there). A picture is a PNG, compared by
-//! structural similarity.
+//! structural similarity and
+//! mean difference.
 //!
 //! `INSTA_UPDATE=always AIRLIGHT_BLESS=1` blesses whatever differs at all, and is refused where a
 //! snapshot was blessed on another adapter or driver: delete the snapshots to move them.
@@ -80,14 +81,17 @@ impl Buffer {
         let mut lines = text.lines();
         let adapter = lines.next()?.strip_prefix("adapter: ")?.to_owned();
         let numbers = |line: &str| -> Vec<f64> {
-            line.split(|c: char| c.is_whitespace() || c == ';' || c == ',').filter_map(|w| w.parse().ok()).collect()
+            line.split(|c: char| c.is_whitespace() || c == ';' || c == ',')
+                .filter_map(|w| w.parse().ok())
+                .collect()
         };
         let shape = numbers(lines.next()?.strip_prefix("shape: ")?);
         let tolerance = numbers(lines.next()?.strip_prefix("tolerance: ")?);
         let ([columns, rows, channels], [absolute, relative, outliers]) = (&shape[..], &tolerance[..]) else {
             return None;
         };
-        let values: Option<Vec<f32>> = lines.flat_map(str::split_whitespace).map(|w| w.parse().ok()).collect();
+        let values: Option<Vec<f32>> =
+            lines.flat_map(str::split_whitespace).map(|w| w.parse().ok()).collect();
         Some(Self {
             adapter,
             shape: [*columns as usize, *rows as usize, *channels as usize],
@@ -166,16 +170,18 @@ impl Picture {
         Some(Self { size: [image.width(), image.height()], pixels: image.into_raw() })
     }
 
-    /// Structural similarity of the luminance of the encoded values.
-    pub fn similarity(&self, other: &Self) -> f64 {
+    /// Structural similarity of the luminance of the encoded values, and the mean difference of all
+    /// values in steps of 1/255: a picture that is brighter throughout keeps its structure.
+    pub fn similarity(&self, other: &Self) -> (f64, f64) {
         if self.size != other.size {
-            return 0.0;
+            return (0.0, 255.0);
         }
         let grey = |picture: &Self| -> Vec<f64> {
             picture.pixels.chunks_exact(4).map(|p| error::luminance([p[0], p[1], p[2]])).collect()
         };
         let [width, height] = self.size.map(|side| side as usize);
-        error::ssim(&grey(self), &grey(other), width, height, 255.0)
+        let structure = error::ssim(&grey(self), &grey(other), width, height, 255.0);
+        (structure, error::mean_absolute(&self.pixels, &other.pixels))
     }
 }
 
@@ -190,12 +196,19 @@ pub enum Mode {
 
 /// The mode from the environment, or why it is refused. `update`: `INSTA_UPDATE`; `bless`:
 /// `AIRLIGHT_BLESS`; `recorded`: the adapter of the blessed snapshot, if there is one.
-pub fn mode(update: Option<&str>, bless: Option<&str>, recorded: Option<&str>, adapter: &str) -> Result<Mode, String> {
+pub fn mode(
+    update: Option<&str>,
+    bless: Option<&str>,
+    recorded: Option<&str>,
+    adapter: &str,
+) -> Result<Mode, String> {
     let writes = matches!(update, Some("always" | "1" | "force" | "unseen"));
     let blesses = bless.is_some_and(|value| !value.is_empty() && value != "0");
     match (writes, blesses) {
         (false, false) => Ok(Mode::Compare),
-        (true, false) => Err("INSTA_UPDATE alone would bless within no tolerance: run `make bless`".to_owned()),
+        (true, false) => {
+            Err("INSTA_UPDATE alone would bless within no tolerance: run `make bless`".to_owned())
+        }
         (false, true) => Err("AIRLIGHT_BLESS needs INSTA_UPDATE=always: run `make bless`".to_owned()),
         (true, true) => match recorded {
             Some(recorded) if recorded != adapter => Err(format!(
@@ -232,9 +245,14 @@ impl Comparator for Tolerant {
                 }
                 match (Picture::from_png(old), Picture::from_png(new)) {
                     (Some(old), Some(new)) => {
-                        let similarity = new.similarity(&old);
-                        (similarity < self.similarity)
-                            .then(|| format!("structural similarity {similarity:.4} is below {}", self.similarity))
+                        let (structure, mean) = new.similarity(&old);
+                        (structure < self.similarity || mean > 1.0).then(|| {
+                            format!(
+                                "structural similarity {structure:.4} (at least {}), mean difference {mean:.2} of 255 (at \
+                                 most 1)",
+                                self.similarity
+                            )
+                        })
                     }
                     _ => Some("the picture cannot be read".to_owned()),
                 }
@@ -257,7 +275,9 @@ fn recorded(name: &str) -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots").join(format!("{name}.snap"));
     let text = std::fs::read_to_string(path).ok()?;
     let line = text.lines().find_map(|line| {
-        line.strip_prefix("adapter: ").or_else(|| line.strip_prefix("description: ")).map(|l| l.trim_matches('"'))
+        line.strip_prefix("adapter: ")
+            .or_else(|| line.strip_prefix("description: "))
+            .map(|l| l.trim_matches('"'))
     });
     line.map(str::to_owned)
 }

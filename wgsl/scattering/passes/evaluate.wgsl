@@ -20,12 +20,12 @@
 // binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH.
 // binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v.
-// binding scattered: out, rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
+// binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
+#import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel, perspective_distance}
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{
-    series_at, series_next, coefficients, coefficients_lanczos, basis_from_stored, surface_bias
+    series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored, surface_bias
 }
 #import airlight::core::light::Light
 #import airlight::scattering::march::march_shadow_map
@@ -54,15 +54,12 @@ const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
-@compute @workgroup_size(16, 8)
-fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id.xy >= textureDimensions(scattered)) {
-        return;
-    }
-    let ndc = ndc_from_pixel(camera, vec2<f32>(id.xy) + 0.5);
-    let ray = view_ray(camera, ndc);
-    let surface = clamp(finite_or(textureLoad(depth, id.xy, 0).x, camera.far_depth), 0.0, 1.0);
-    let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+/// Radiance, and mean visibility in alpha, of a pixel.
+fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
+    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
+    let ray = perspective_ray(camera, ndc);
+    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+    let distance = perspective_distance(camera, ndc, surface, medium.distance_limit);
 
     let epipolar = epipolar_ray(frame, ray.direction);
     let rows = neighbour_rows(frame, epipolar.row);
@@ -76,9 +73,9 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = vec2<f32>(max(texels - 0.5, 0.5), epipolar.row + 0.5) / size;
 
     let depth_of_ray = depth_from_ray(slice, epipolar) - surface_bias(4u * LAYERS);
-    var series = series_at(depth_of_ray, 0u);
+    var series = series_first(depth_of_ray);
 #ifdef LANCZOS
-    var window = series_at(1.0 / f32(4u * LAYERS), 0u);
+    var window = series_first(1.0 / f32(4u * LAYERS));
 #endif
     var visibility = 0.5;
     for (var layer = 0u; layer < LAYERS; layer++) {
@@ -109,5 +106,23 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
 
     let cosine = dot(ray.direction, light.direction);
     let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
-    textureStore(scattered, id.xy, vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility));
+    return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
+}
+
+@compute @workgroup_size(16, 8)
+fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
+    if all(id.xy < textureDimensions(scattered)) {
+        textureStore(scattered, id.xy, pixel_light(id.xy));
+    }
+}
+
+/// One triangle over the whole picture.
+@vertex
+fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment_evaluate(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return pixel_light(vec2<u32>(position.xy));
 }

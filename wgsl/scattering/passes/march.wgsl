@@ -14,9 +14,11 @@
 // binding rectified: the rectified map; rows only.
 // binding shadow_map: depth of the standard shadow map; with SHADOW_MAP only.
 // binding parameters: number of steps; with SHADOW_MAP or STEPS only.
-// binding scattered: out, rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
+// binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
+#import airlight::core::camera::{
+    Camera, view_ray, perspective_ray, ndc_from_pixel, distance_from_depth, perspective_distance
+}
 #import airlight::core::finite::finite_or
 #import airlight::core::light::Light
 #import airlight::scattering::march::{march_row, march_row_steps, march_shadow_map}
@@ -52,15 +54,17 @@ struct MarchParameters {
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
 
-@compute @workgroup_size(16, 8)
-fn march(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id.xy >= textureDimensions(scattered)) {
-        return;
-    }
-    let ndc = ndc_from_pixel(camera, vec2<f32>(id.xy) + 0.5);
+/// Radiance, and mean visibility in alpha, of a pixel.
+fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
+    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
+    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+#ifdef SHADOW_MAP
     let ray = view_ray(camera, ndc);
-    let surface = clamp(finite_or(textureLoad(depth, id.xy, 0).x, camera.far_depth), 0.0, 1.0);
     let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+#else
+    let ray = perspective_ray(camera, ndc);
+    let distance = perspective_distance(camera, ndc, surface, medium.distance_limit);
+#endif
 #ifdef AVERAGE
     let extinction = 0.0;
 #else
@@ -90,5 +94,23 @@ fn march(@builtin(global_invocation_id) id: vec3<u32>) {
 #endif
     let cosine = dot(ray.direction, light.direction);
     let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
-    textureStore(scattered, id.xy, vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility));
+    return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
+}
+
+@compute @workgroup_size(16, 8)
+fn march(@builtin(global_invocation_id) id: vec3<u32>) {
+    if all(id.xy < textureDimensions(scattered)) {
+        textureStore(scattered, id.xy, pixel_light(id.xy));
+    }
+}
+
+/// One triangle over the whole picture.
+@vertex
+fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment_march(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return pixel_light(vec2<u32>(position.xy));
 }

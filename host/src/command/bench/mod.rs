@@ -69,7 +69,10 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     for system in &options.systems {
         if !SYSTEMS.contains(&system.as_str()) {
             let known = SYSTEMS.join(", ");
-            return Err(CommandError::misuse("bench", format!("no system `{system}` to measure; there is {known}")));
+            return Err(CommandError::misuse(
+                "bench",
+                format!("no system `{system}` to measure; there is {known}"),
+            ));
         }
     }
     let gpu = pollster::block_on(Gpu::new())?;
@@ -85,8 +88,10 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     if let Some(path) = &options.json {
         let driver = format!("{} {}", gpu.adapter.driver, gpu.adapter.driver_info);
         let report = Report { adapter: gpu.adapter.name.clone(), driver, rows };
-        write_whole(path, |writer| serde_json::to_writer_pretty(writer, &report).map_err(std::io::Error::other))
-            .map_err(CommandError::failure)?;
+        write_whole(path, |writer| {
+            serde_json::to_writer_pretty(writer, &report).map_err(std::io::Error::other)
+        })
+        .map_err(CommandError::failure)?;
     }
     Ok(())
 }
@@ -159,5 +164,13 @@ pub fn figure(system: &'static str, name: impl Into<String>, value: f64, unit: &
 
 /// A row of milliseconds.
 pub fn time(system: &'static str, name: impl Into<String>, samples: Vec<f64>) -> Row {
-    Row { system, name: name.into(), value: median(&samples), unit: "ms", better: "lower", quality: None, samples }
+    Row {
+        system,
+        name: name.into(),
+        value: median(&samples),
+        unit: "ms",
+        better: "lower",
+        quality: None,
+        samples,
+    }
 }

@@ -5,7 +5,7 @@ use super::{Quality, Row, Work, figure, interleaved, ratio, time};
 use crate::command::CommandError;
 use crate::command::progress;
 use crate::core::Raster;
-use crate::scattering::{Along, BasisFormat, March, Prefiltered, Settings, Weighting};
+use crate::scattering::{Along, BasisFormat, March, Prefiltered, Settings, Weighting, epipole_near_picture};
 use crate::scenes::{self, Scene};
 use crate::{Gpu, Shaders, Stage, Texture};
 use airlight_tests::error;
@@ -22,7 +22,12 @@ pub const SHADOW_MAP: [u32; 2] = [2048, 2048];
 const STRIDE: usize = 4;
 
 /// A scene by name, on the GPU.
-pub fn stage(gpu: &Gpu, shaders: &Shaders, name: &str, size: [u32; 2]) -> Result<(Scene, Stage), CommandError> {
+pub fn stage(
+    gpu: &Gpu,
+    shaders: &Shaders,
+    name: &str,
+    size: [u32; 2],
+) -> Result<(Scene, Stage), CommandError> {
     let scene = scenes::scene(name)?.ok_or_else(|| CommandError::failure(format!("no scene `{name}`")))?;
     let raster = Raster::new(gpu, shaders)?;
     let stage = Stage::new(gpu, &raster, &scene.setting(), size, SHADOW_MAP)?;
@@ -143,7 +148,8 @@ const VISIBILITY: &str = "mean absolute error of visibility";
 /// Cost of marching over that of everything that prefiltering does, rectification counted in.
 fn march_over_prefiltered(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let (_, stage) = stage(gpu, shaders, "foliage", SIZE)?;
-    let settings = Settings { weighting: Weighting::Average, ..Settings::default() };
+    let epipole_march = epipole_near_picture(&stage.camera, stage.light.direction);
+    let settings = Settings { weighting: Weighting::Average, epipole_march, ..Settings::default() };
     let prefiltered = Prefiltered::new(gpu, shaders, settings, SIZE)?;
     let bound = prefiltered.bind(gpu, &stage.inputs())?;
     let fixed = Along::RowSteps { map: &prefiltered.rectification, steps: settings.map[0] };
@@ -219,7 +225,12 @@ fn average_visibility(gpu: &Gpu, shaders: &Shaders, name: &str) -> Result<Vec<Ro
         }
         rows.push(figure(SYSTEM, format!("visibility_error_{name}_{bases}"), errors[0], "fraction"));
         let added = errors[0] - errors[1];
-        rows.push(figure(SYSTEM, format!("visibility_error_{name}_{bases}_added_by_8_bit"), added, "fraction"));
+        rows.push(figure(
+            SYSTEM,
+            format!("visibility_error_{name}_{bases}_added_by_8_bit"),
+            added,
+            "fraction",
+        ));
     }
     Ok(rows)
 }
@@ -237,12 +248,7 @@ fn weighted_radiance(gpu: &Gpu, shaders: &Shaders, name: &str) -> Result<Vec<Row
     let values = truth.radiance(gpu, &prefiltered.scattered)?;
     let unrectified = truth.shadow_map_picture(gpu, &stage)?.radiance();
     Ok(vec![
-        figure(
-            SYSTEM,
-            format!("radiance_error_{name}"),
-            error::relative_rmse(&values, &exact),
-            "fraction",
-        ),
+        figure(SYSTEM, format!("radiance_error_{name}"), error::relative_rmse(&values, &exact), "fraction"),
         figure(
             SYSTEM,
             format!("rectification_error_{name}"),
@@ -267,12 +273,10 @@ fn scene_independence(gpu: &Gpu, shaders: &Shaders) -> Result<Row, CommandError>
     };
     let samples = interleaved(
         gpu,
-        &[
-            &|encoder| tree.record_evaluation(encoder, tree_bound),
-            &|encoder| torus.record_evaluation(encoder, torus_bound),
-        ],
+        &[&|encoder| tree.record_evaluation(encoder, tree_bound), &|encoder| {
+            torus.record_evaluation(encoder, torus_bound)
+        }],
         9,
     )?;
     Ok(ratio(SYSTEM, "evaluation_tree_over_torus", &samples[0], &samples[1], "lower", None))
 }
-

@@ -7,7 +7,7 @@ mod plates;
 use super::{CommandError, parse, progress};
 use crate::core::{Raster, Tonemap};
 use crate::formats::{create_folder, write_png};
-use crate::scattering::{Along, Composite, March, Prefiltered, Settings, Weighting};
+use crate::scattering::{Along, Composite, March, Prefiltered, Settings, Weighting, epipole_near_picture};
 use crate::scenes::{self, Scene};
 use crate::{Gpu, Shaders, Stage, Texture};
 use std::path::{Path, PathBuf};
@@ -56,7 +56,8 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     let mut plates = Vec::new();
     for name in chosen {
         bar.set_message(format!("scattering/{name}"));
-        let scene = scenes::scene(name)?.ok_or_else(|| CommandError::failure(format!("no scene `{name}`")))?;
+        let scene =
+            scenes::scene(name)?.ok_or_else(|| CommandError::failure(format!("no scene `{name}`")))?;
         let folder = options.out.join("scattering").join(name);
         create_folder(&folder).map_err(|error| CommandError::Failure(format!("--out: {error}")))?;
         plates.push(plate(&gpu, &shaders, scene, options.size, &folder)?);
@@ -73,17 +74,17 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
 
 fn choose(only: Option<&str>) -> Result<Vec<&'static str>, CommandError> {
     let Some(only) = only else { return Ok(SCATTERING.to_vec()) };
-    let (system, picture) = only.split_once('/').map_or((only, None), |(system, picture)| (system, Some(picture)));
+    let (system, picture) =
+        only.split_once('/').map_or((only, None), |(system, picture)| (system, Some(picture)));
     let known = SCATTERING.map(|name| format!("scattering/{name}")).join(", ");
-    let unknown = || CommandError::misuse("--only", format!("there is no `{only}`; there is scattering, {known}"));
+    let unknown =
+        || CommandError::misuse("--only", format!("there is no `{only}`; there is scattering, {known}"));
     if system != "scattering" {
         return Err(unknown());
     }
     match picture {
         None => Ok(SCATTERING.to_vec()),
-        Some(picture) => {
-            Ok(vec![*SCATTERING.iter().find(|name| **name == picture).ok_or_else(unknown)?])
-        }
+        Some(picture) => Ok(vec![*SCATTERING.iter().find(|name| **name == picture).ok_or_else(unknown)?]),
     }
 }
 
@@ -96,7 +97,10 @@ fn plate(
 ) -> Result<Plate, CommandError> {
     let raster = Raster::new(gpu, shaders)?;
     let stage = Stage::new(gpu, &raster, &scene.setting(), size, SHADOW_MAP)?;
-    let settings = Settings::default();
+    let settings = Settings {
+        epipole_march: epipole_near_picture(&stage.camera, stage.light.direction),
+        ..Settings::default()
+    };
     let prefiltered = Prefiltered::new(gpu, shaders, settings, size)?;
     let bound = prefiltered.bind(gpu, &stage.inputs())?;
     let along = Along::ShadowMap { steps: STEPS };
@@ -130,11 +134,16 @@ fn plate(
     save("surface.png", "Surfaces without air".to_owned(), surface)?;
     let maps = [
         ("shadow_map.png", "Standard shadow map", plates::depth(gpu, &stage.pictures.shadow_map)?),
-        ("rectified.png", "Rectified map: radius, slice", plates::depth(gpu, &prefiltered.rectification.rectified)?),
+        (
+            "rectified.png",
+            "Rectified map: radius, slice",
+            plates::depth(gpu, &prefiltered.rectification.rectified)?,
+        ),
         ("bases.png", "Filtered bases 1, 5, 9 and so on", plates::bases(gpu, &prefiltered.bases)?),
     ];
     for (file, caption, plate) in maps {
-        write_png(folder.join(file), plate.width, plate.height, &plate.pixels).map_err(CommandError::failure)?;
+        write_png(folder.join(file), plate.width, plate.height, &plate.pixels)
+            .map_err(CommandError::failure)?;
         pictures.push((file, caption.to_owned()));
     }
     Ok(Plate { scene, settings, pictures, times })

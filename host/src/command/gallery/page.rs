@@ -28,7 +28,10 @@ pub fn write(path: &Path, adapter: &str, size: [u32; 2], plates: &[Plate]) -> Re
 
 fn render(adapter: &str, [width, height]: [u32; 2], plates: &[Plate]) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
-    writeln!(page, "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Airlight gallery</title>")?;
+    writeln!(
+        page,
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Airlight gallery</title>"
+    )?;
     writeln!(page, "<style>{STYLE}</style><main><h1>Airlight gallery</h1>")?;
     writeln!(page, "<p>{width}x{height} pixels on {}</p>", escape(adapter))?;
     for plate in plates {

@@ -31,7 +31,8 @@ pub fn depth(gpu: &Gpu, map: &Texture) -> Result<Grey, CommandError> {
     let blockers = || values.iter().copied().filter(|value| *value < 1.0);
     let least = blockers().fold(1.0, f32::min);
     let greatest = blockers().fold(0.0, f32::max).max(least + 1e-6);
-    let grey = |value: f32| if value >= 1.0 { 255 } else { (235.0 * (value - least) / (greatest - least)) as u8 };
+    let grey =
+        |value: f32| if value >= 1.0 { 255 } else { (235.0 * (value - least) / (greatest - least)) as u8 };
     Ok(halved(width, height, values.into_iter().map(grey).collect()))
 }
 
@@ -64,7 +65,8 @@ fn halved(width: u32, height: u32, pixels: Vec<u8>) -> Grey {
     let mut halves = Vec::with_capacity((half_width * half_height) as usize);
     for y in 0..half_height {
         for x in 0..half_width {
-            let sum = at(2 * x, 2 * y) + at(2 * x + 1, 2 * y) + at(2 * x, 2 * y + 1) + at(2 * x + 1, 2 * y + 1);
+            let sum =
+                at(2 * x, 2 * y) + at(2 * x + 1, 2 * y) + at(2 * x, 2 * y + 1) + at(2 * x + 1, 2 * y + 1);
             halves.push(((sum + 2) / 4) as u8);
         }
     }

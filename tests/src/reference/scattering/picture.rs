@@ -112,7 +112,13 @@ impl Picture {
     /// The same pixels of a full picture of `channels` values a pixel and `width` pixels a row
     /// (the GPU's read-back), the values `keep` of each: comparable with the above.
     #[must_use]
-    pub fn sample<T: Copy>(&self, full: &[T], width: usize, channels: usize, keep: std::ops::Range<usize>) -> Vec<T> {
+    pub fn sample<T: Copy>(
+        &self,
+        full: &[T],
+        width: usize,
+        channels: usize,
+        keep: std::ops::Range<usize>,
+    ) -> Vec<T> {
         self.pixels
             .iter()
             .flat_map(|pixel| {
