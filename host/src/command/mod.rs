@@ -57,7 +57,7 @@ pub fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("airlight: {}", list::one_line(&error.to_string()));
+            eprintln!("airlight: {}", list::one_line(error.to_string()));
             error.exit_code()
         }
     }

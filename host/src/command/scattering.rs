@@ -173,7 +173,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
             buffers.push((name, array(&gpu, texture)?));
         }
         for (name, array) in &buffers {
-            write_npy(&folder.join(format!("{name}.npy")), array)
+            write_npy(folder.join(format!("{name}.npy")), array)
                 .map_err(|error| CommandError::Failure(format!("--buffers: {error}")))?;
         }
     }
