@@ -748,7 +748,16 @@ fn what_is_missing_or_given_twice_is_told() {
         &["--out block_sums=x.npy", "same file"],
     );
     bad(
-        &["run", "scattering/evaluate", "--dispatch", "1", "--in", "bases_sampler=hdr.npy"],
+        &[
+            "run",
+            "scattering/evaluate",
+            "--entry",
+            "evaluate",
+            "--dispatch",
+            "1",
+            "--in",
+            "bases_sampler=hdr.npy",
+        ],
         &["bases_sampler", "sampler"],
     );
     bad(

@@ -89,11 +89,13 @@ impl Sentinel for Mat4 {
     }
 }
 
+/// Name, WGSL type, words of its sentinel, and the whole struct's bytes with only this field set.
+type Field = (&'static str, &'static str, Vec<(u32, u32)>, Vec<u8>);
+
 /// What is known of a Rust twin.
 struct Twin {
     size: u64,
-    /// Name, WGSL type, words, and the whole struct's bytes with only this field set.
-    fields: Vec<(&'static str, &'static str, Vec<(u32, u32)>, Vec<u8>)>,
+    fields: Vec<Field>,
 }
 
 fn bytes<T: ShaderType + WriteInto>(value: &T) -> Vec<u8> {

@@ -8,7 +8,6 @@
 // note: It adds 0.5 to the unnormalised sum over s texels: that must be 0.5 s. Sums are normalised here.
 // note: The series has period 2 in z_ray - z_stored, so that it jumps a second time at a difference
 // note: of 1: `guarded` therefore maps view rays to GUARD .. 1 - GUARD and leaves the rest of 0..1 to blockers.
-// note: `surface_bias` may take up to 0.8 GUARD of that margin on the side of the light.
 // note: Group g, 0 .. M/4 - 1, holds the bases 4g+1 .. 4g+4: (sin, cos) of c_(2g+1) z and of c_(2g+2) z.
 
 const PI: f32 = 3.141592653589793;
@@ -22,9 +21,9 @@ fn guarded(unit: f32) -> f32 {
     return clamp(GUARD + (1.0 - 2.0 * GUARD) * unit, 0.0, 1.0);
 }
 
-/// What is taken off the depth of a view ray before evaluation, towards the light: half the width of
-/// the softened edge. Without it a lit surface shades the end of every ray that meets it, because the
-/// series is 1/2, not 1, at the depth of the blocker itself.
+/// What is added to the depth of a blocker before its bases are taken, up to 1: about half the width
+/// of the softened edge. Without it a lit surface shades the end of every ray that meets it, because
+/// the series is 1/2, not 1, at the depth of the blocker itself. `bases`: M.
 fn surface_bias(bases: u32) -> f32 {
     return min(0.6 / f32(bases), 0.8 * GUARD);
 }

@@ -5,6 +5,7 @@
 // note: Both marches run from the far end towards the eye by Horner's rule, sum = sum * q + V, with q the
 // note: transmittance of one step: the weights of Eq. 4.8 then cost one multiplication and no exponential.
 
+#import airlight::core::finite::finite_or
 #import airlight::core::light::{Light, shadow_position}
 #import airlight::scattering::single_scatter::one_minus_exp
 
@@ -70,7 +71,7 @@ fn march_shadow_map(
         let at = first + stride * (f32(left) - 1.0 + offset);
         let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
         let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
-        let stored = textureLoad(map, texel, 0).x;
+        let stored = finite_or(textureLoad(map, texel, 0).x, light.far_depth);
         let lit = !inside || stored == light.far_depth || at.z * facing <= stored * facing;
         sum = sum * ratio + select(0.0, 1.0, lit);
         total = total * ratio + 1.0;

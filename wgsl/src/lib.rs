@@ -90,7 +90,7 @@ modules! {
     core::prefix_sum [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::single_scatter ["core::phase"],
-    scattering::march ["core::light", "scattering::single_scatter"],
+    scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
 }
 
 passes! {

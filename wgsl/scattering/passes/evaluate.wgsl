@@ -2,8 +2,6 @@
 // summary: In-scattered radiance of every pixel from the filtered bases: a dot product, whatever the scene.
 // source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
 // note: Texel i holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
-// note: The ray is moved towards the light by half the width of the series' edge (surface_bias), which the thesis
-// note: does not do: otherwise lit surfaces shade the ends of their own rays.
 // note: Around the light's place in the picture (and its antipode's) rays cover only a few texels and the light
 // note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
 // note: texels, very short rays included, blended in without a seam.
@@ -25,7 +23,7 @@
 #import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel, perspective_distance}
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{
-    series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored, surface_bias
+    series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored
 }
 #import airlight::core::light::Light
 #import airlight::scattering::march::march_shadow_map
@@ -72,7 +70,7 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let texels = clamp(size.x * distance * epipolar.sine / slice.radius_max, 0.0, size.x);
     let at = vec2<f32>(max(texels - 0.5, 0.5), epipolar.row + 0.5) / size;
 
-    let depth_of_ray = depth_from_ray(slice, epipolar) - surface_bias(4u * LAYERS);
+    let depth_of_ray = depth_from_ray(slice, epipolar);
     var series = series_first(depth_of_ray);
 #ifdef LANCZOS
     var window = series_first(1.0 / f32(4u * LAYERS));

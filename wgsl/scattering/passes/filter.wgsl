@@ -2,6 +2,8 @@
 // summary: Turns the rectified map into Fourier bases and filters them along its rows by a weighted running mean.
 // source: thesis 4.3.1 to 4.3.3, Eq. 4.6 to 4.9, Listings 4.1 to 4.3.
 // note: One thread takes one row and BASES_PER_THREAD bases, four of them a vector.
+// note: Blockers are moved away from the light by about half the width of the series' edge (surface_bias), which
+// note: the thesis does not do: otherwise lit surfaces shade the ends of their own rays.
 // note: Depths outside 0..1 are clamped, non-finite ones count as unblocked.
 // definition BASES: number M of bases, a multiple of 4 from 4 to 128.
 // definition BASES_PER_THREAD: bases a thread filters, a multiple of 4.
@@ -13,7 +15,7 @@
 // binding bases: out, M/4 layers of the filtered bases; -1..1 is stored as 0..1.
 
 #import airlight::core::finite::finite_or
-#import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis}
+#import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis, surface_bias}
 #import airlight::core::prefix_sum::{row_weights, row_weights_next, running_mean}
 #import airlight::scattering::rectify::slice_from_texel
 #import airlight::scattering::single_scatter::Medium
@@ -49,7 +51,7 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     var means = array<vec4<f32>, PER_THREAD>();
     for (var column = 0u; column < size.x; column++) {
         let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
-        var series = series_at(depth, first);
+        var series = series_at(min(depth + surface_bias(4u * LAYERS), 1.0), first);
         for (var group = 0u; group < PER_THREAD; group++) {
             means[group] = running_mean(means[group], series.basis, weights);
             if first + group < LAYERS {

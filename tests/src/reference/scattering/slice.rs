@@ -139,7 +139,7 @@ impl Rectification {
 fn slice(camera: &Camera, frame: &Frame, phi: f64, distance_limit: f64) -> Slice {
     let (theta_min, theta_max) = angles(camera, frame, phi);
     let (theta_min, theta_max) = if theta_max - theta_min < 1e-3 {
-        let middle = 0.5 * (theta_min + theta_max);
+        let middle = (0.5 * (theta_min + theta_max)).clamp(5e-4, PI - 5e-4);
         (middle - 5e-4, middle + 5e-4)
     } else {
         (theta_min, theta_max)
