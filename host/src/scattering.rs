@@ -177,12 +177,19 @@ impl Default for Settings {
             weighting: Weighting::default(),
             window: true,
             epipole_march: true,
-            bases_per_thread: 16,
+            bases_per_thread: 8,
         }
     }
 }
 
 impl Settings {
+    /// The defaults for an adapter: a software adapter has no idle lanes to fill, so that one thread takes
+    /// all bases of a row and computes its sines once; a GPU wants more threads.
+    pub fn tuned(gpu: &Gpu) -> Self {
+        let software = gpu.adapter.device_type == wgpu::DeviceType::Cpu;
+        Self { bases_per_thread: if software { 32 } else { 8 }, ..Self::default() }
+    }
+
     /// Checks the settings for a device.
     ///
     /// # Errors

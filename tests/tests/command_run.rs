@@ -166,8 +166,10 @@ fn scan_runs_by_entry_point_and_its_buffers_go_round() {
     }
 }
 
-/// Basis `index` (from 0) of Eq. 4.7 at depth `z`, as it is stored, 0..1.
-fn stored_basis(index: usize, z: f64) -> f64 {
+/// Basis `index` (from 0) of Eq. 4.7 of a blocker at depth `z`, as it is stored, 0..1. Of `bases`, blockers are
+/// moved by 0.6 / M, at most 0.04, and not beyond 1.
+fn stored_basis(index: usize, bases: usize, z: f64) -> f64 {
+    let z = (z + (0.6 / bases as f64).min(0.04)).min(1.0);
     let angle = PI * (2.0 * (index / 2) as f64 + 1.0) * z;
     0.5 + 0.5 * if index.is_multiple_of(2) { angle.sin() } else { angle.cos() }
 }
@@ -180,7 +182,8 @@ fn assert_bases(found: &[f64], bases: usize, rows: &[[f64; 4]], ratio: f64, tole
                 for channel in 0..4 {
                     let basis = 4 * layer + channel;
                     let weights: Vec<f64> = (0..=column as i32).map(|i| ratio.powi(i)).collect();
-                    let sum: f64 = weights.iter().zip(depths).map(|(w, z)| w * stored_basis(basis, *z)).sum();
+                    let sum: f64 =
+                        weights.iter().zip(depths).map(|(w, z)| w * stored_basis(basis, bases, *z)).sum();
                     let expected = sum / weights.iter().sum::<f64>();
                     let at = ((layer * rows.len() + row) * 4 + column) * 4 + channel;
                     let error = (found[at] - expected).abs();

@@ -54,9 +54,10 @@ fn series_at(z: f32, group: u32) -> Series {
     return Series(vec4<f32>(first, rotate(first, double)), rotate(double, double));
 }
 
-/// The bases of group 0 at depth `z`, 0..1: one sine and cosine instead of two.
+/// The bases of group 0 at depth `z`, 0..1: one sine and cosine instead of two, and of an angle up to
+/// pi, which needs no reduction.
 fn series_first(z: f32) -> Series {
-    let first = sine_cosine(z);
+    let first = vec2<f32>(sin(PI * z), cos(PI * z));
     let double = rotate(first, first);
     return Series(vec4<f32>(first, rotate(first, double)), rotate(double, double));
 }

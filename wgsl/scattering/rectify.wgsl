@@ -166,16 +166,6 @@ fn slice_bounds(camera: Camera, frame: Frame, azimuth: f32, distance_limit: f32)
     return Slice(angle_min, angle_max, clamp(radius, 1e-6 * distance_limit, limit), reference);
 }
 
-/// `mix` of two neighbouring slices.
-fn slice_mix(a: Slice, b: Slice, fraction: f32) -> Slice {
-    let mixed = mix(
-        vec4<f32>(a.angle_min, a.angle_max, a.radius_max, a.reference),
-        vec4<f32>(b.angle_min, b.angle_max, b.radius_max, b.reference),
-        fraction
-    );
-    return Slice(mixed.x, mixed.y, mixed.z, mixed.w);
-}
-
 /// A slice as one texel of an rgba32float texture.
 fn slice_texel(slice: Slice) -> vec4<f32> {
     return vec4<f32>(slice.angle_min, slice.angle_max, slice.radius_max, slice.reference);
@@ -200,14 +190,12 @@ fn epipolar_ray(frame: Frame, direction: vec3<f32>) -> EpipolarRay {
     return EpipolarRay(atan2(sine, height), sine, clamp(row, 0.0, last));
 }
 
-/// The two rows around a fractional `row`: indices, always inside the map.
-fn neighbour_rows(frame: Frame, row: f32) -> vec2<u32> {
-    let rows = vec2<u32>(u32(frame.rows));
-    let low = min(u32(max(row, 0.0)), rows.x);
-    let pair = vec2<u32>(low, low + 1u);
-    // At most one turn too far: a subtraction is cheaper than a remainder.
-    let wrapped = min(select(pair, pair - rows, pair >= rows), rows - 1u);
-    return select(min(pair, rows - 1u), wrapped, frame.wraps > 0.0);
+/// The row nearest to a fractional `row`, always inside the map.
+fn nearest_row(frame: Frame, row: f32) -> u32 {
+    let rows = u32(frame.rows);
+    let nearest = u32(max(row, 0.0) + 0.5);
+    // Half a row beyond the last is the first, where rows wrap.
+    return select(min(nearest, rows - 1u), 0u, nearest >= rows && frame.wraps > 0.0);
 }
 
 /// Depth 0..1 in the rectified map of an angle to the light: view rays of the slice lie in
@@ -216,8 +204,8 @@ fn depth_from_angle(slice: Slice, angle: f32) -> f32 {
     return guarded((angle - slice.angle_min) / max(slice.angle_max - slice.angle_min, 0.1 * LEAST_WIDTH));
 }
 
-/// Depth in the rectified map of a view ray: kept out of the guard, into which a ray between two
-/// slices with different bounds may fall.
+/// Depth in the rectified map of a view ray: kept out of the guard, into which a ray beside the
+/// middle of its slice may fall.
 fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
     return clamp(depth_from_angle(slice, ray.angle), GUARD, 1.0 - GUARD);
 }

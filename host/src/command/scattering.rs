@@ -130,7 +130,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         map: options.map,
         format: if options.half { BasisFormat::Rgba16Float } else { BasisFormat::Rgba8Unorm },
         weighting: if options.average { Weighting::Average } else { Weighting::Transmittance },
-        ..Settings::default()
+        ..Settings::tuned(&gpu)
     };
     settings.validate(&gpu)?;
     let LightSpelling::Directional { azimuth, elevation } = options.light;

@@ -28,7 +28,7 @@
 #import airlight::core::light::Light
 #import airlight::scattering::march::march_shadow_map
 #import airlight::scattering::rectify::{
-    Frame, epipolar_ray, neighbour_rows, slice_from_texel, slice_mix, depth_from_ray
+    Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray
 }
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
@@ -60,12 +60,9 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let distance = perspective_distance(camera, ndc, surface, medium.distance_limit);
 
     let epipolar = epipolar_ray(frame, ray.direction);
-    let rows = neighbour_rows(frame, epipolar.row);
-    let slice = slice_mix(
-        slice_from_texel(textureLoad(slices, vec2<u32>(rows.x, 0u), 0)),
-        slice_from_texel(textureLoad(slices, vec2<u32>(rows.y, 0u), 0)),
-        fract(epipolar.row)
-    );
+    // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
+    let row = nearest_row(frame, epipolar.row);
+    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     let size = vec2<f32>(textureDimensions(bases).xy);
     let texels = clamp(size.x * distance * epipolar.sine / slice.radius_max, 0.0, size.x);
     let at = vec2<f32>(max(texels - 0.5, 0.5), epipolar.row + 0.5) / size;

@@ -23,7 +23,7 @@
 #import airlight::core::light::Light
 #import airlight::scattering::march::{march_row, march_row_steps, march_shadow_map}
 #import airlight::scattering::rectify::{
-    Frame, epipolar_ray, neighbour_rows, slice_from_texel, depth_from_ray
+    Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray
 }
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
@@ -78,8 +78,7 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     );
 #else
     let epipolar = epipolar_ray(frame, ray.direction);
-    let rows = neighbour_rows(frame, epipolar.row);
-    let row = select(rows.x, rows.y, fract(epipolar.row) >= 0.5);
+    let row = nearest_row(frame, epipolar.row);
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     let width = f32(textureDimensions(rectified).x);
     let radius = distance * epipolar.sine;

@@ -125,15 +125,24 @@ pub fn milliseconds(gpu: &Gpu, record: &dyn Fn(&mut wgpu::CommandEncoder)) -> Re
 /// A piece of work: records its commands.
 pub type Work<'a> = &'a dyn Fn(&mut wgpu::CommandEncoder);
 
-/// `count` samples of each piece of work, taken by turns after a warm-up of each. One list a piece.
+/// Work shorter than this is repeated within a sample.
+const SAMPLE_MILLISECONDS: f64 = 600.0;
+
+/// `count` samples of each piece of work, taken by turns after a warm-up of each. One list a piece. A sample
+/// of short work is the median of several runs in a row, so that what another process does in between
+/// weighs no more on the short side of a ratio than on the long one.
 pub fn interleaved(gpu: &Gpu, works: &[Work<'_>], count: usize) -> Result<Vec<Vec<f64>>, CommandError> {
+    let mut repeats = Vec::new();
     for work in works {
         milliseconds(gpu, work)?;
+        let warm = milliseconds(gpu, work)?;
+        repeats.push((SAMPLE_MILLISECONDS / warm.max(1.0)).clamp(1.0, 9.0) as usize);
     }
     let mut samples = vec![Vec::new(); works.len()];
     for _ in 0..count {
-        for (work, list) in works.iter().zip(&mut samples) {
-            list.push(milliseconds(gpu, work)?);
+        for ((work, list), repeats) in works.iter().zip(&mut samples).zip(&repeats) {
+            let runs: Result<Vec<f64>, _> = (0..*repeats).map(|_| milliseconds(gpu, work)).collect();
+            list.push(median(&runs?));
         }
     }
     Ok(samples)

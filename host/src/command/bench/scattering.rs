@@ -149,7 +149,7 @@ const VISIBILITY: &str = "mean absolute error of visibility";
 fn march_over_prefiltered(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let (_, stage) = stage(gpu, shaders, "foliage", SIZE)?;
     let epipole_march = epipole_near_picture(&stage.camera, stage.light.direction);
-    let settings = Settings { weighting: Weighting::Average, epipole_march, ..Settings::default() };
+    let settings = Settings { weighting: Weighting::Average, epipole_march, ..Settings::tuned(gpu) };
     let prefiltered = Prefiltered::new(gpu, shaders, settings, SIZE)?;
     let bound = prefiltered.bind(gpu, &stage.inputs())?;
     let fixed = Along::RowSteps { map: &prefiltered.rectification, steps: settings.map[0] };
@@ -210,7 +210,7 @@ fn average_visibility(gpu: &Gpu, shaders: &Shaders, name: &str) -> Result<Vec<Ro
                 format,
                 weighting: Weighting::Average,
                 epipole_march: false,
-                ..Settings::default()
+                ..Settings::tuned(gpu)
             };
             let prefiltered = Prefiltered::new(gpu, shaders, settings, size)?;
             let bound = prefiltered.bind(gpu, &stage.inputs())?;
@@ -239,7 +239,7 @@ fn average_visibility(gpu: &Gpu, shaders: &Shaders, name: &str) -> Result<Vec<Ro
 fn weighted_radiance(gpu: &Gpu, shaders: &Shaders, name: &str) -> Result<Vec<Row>, CommandError> {
     let size = [960, 540];
     let (_, stage) = stage(gpu, shaders, name, size)?;
-    let settings = Settings { epipole_march: false, ..Settings::default() };
+    let settings = Settings { epipole_march: false, ..Settings::tuned(gpu) };
     let prefiltered = Prefiltered::new(gpu, shaders, settings, size)?;
     let bound = prefiltered.bind(gpu, &stage.inputs())?;
     run(gpu, &|encoder| prefiltered.record(encoder, &bound))?;
@@ -263,7 +263,7 @@ fn scene_independence(gpu: &Gpu, shaders: &Shaders) -> Result<Row, CommandError>
     let mut prepared = Vec::new();
     for name in ["foliage", "torus"] {
         let (_, stage) = stage(gpu, shaders, name, SIZE)?;
-        let prefiltered = Prefiltered::new(gpu, shaders, Settings::default(), SIZE)?;
+        let prefiltered = Prefiltered::new(gpu, shaders, Settings::tuned(gpu), SIZE)?;
         let bound = prefiltered.bind(gpu, &stage.inputs())?;
         run(gpu, &|encoder| prefiltered.record(encoder, &bound))?;
         prepared.push((stage, prefiltered, bound));

@@ -34,7 +34,7 @@ pub fn scattering(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>,
     for (map, bases) in cases {
         let [width, height] = map;
         bar.set_message(format!("map {width}x{height}, {bases} bases"));
-        let settings = Settings { bases, map, ..Settings::default() };
+        let settings = Settings { bases, map, ..Settings::tuned(gpu) };
         let prefiltered = Prefiltered::new(gpu, shaders, settings, SIZE)?;
         let bound = prefiltered.bind(gpu, &stage.inputs())?;
         run(gpu, &|encoder| prefiltered.record(encoder, &bound))?;

@@ -99,7 +99,7 @@ fn plate(
     let stage = Stage::new(gpu, &raster, &scene.setting(), size, SHADOW_MAP)?;
     let settings = Settings {
         epipole_march: epipole_near_picture(&stage.camera, stage.light.direction),
-        ..Settings::default()
+        ..Settings::tuned(gpu)
     };
     let prefiltered = Prefiltered::new(gpu, shaders, settings, size)?;
     let bound = prefiltered.bind(gpu, &stage.inputs())?;
