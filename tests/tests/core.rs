@@ -560,7 +560,8 @@ fn points_go_to_the_shadow_map_and_back() {
                 }
                 return m;
             }",
-        body: "let light = Light(matrix_at(0u), matrix_at(16u), vec3<f32>(0.0), 1.0, vec3<f32>(0.0), 0.0);
+        body: "let light = Light(matrix_at(0u), matrix_at(16u), vec3<f32>(0.0), 1.0, vec3<f32>(0.0), 0u,
+                   vec3<f32>(0.0), 0.0, vec2<f32>(0.0), 0.0, 0.0);
                let at = shadow_position(light, vec2<f32>(512.0, 256.0), vec3<f32>(input(32u), input(33u), input(34u)));
                let back = shadow_point(light, vec2<f32>(512.0, 256.0), at.xy, at.z);
                output(0u, at.x); output(1u, at.y); output(2u, at.z);

@@ -126,7 +126,8 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     });
     twin!(twins: Light {
         clip_from_world: Mat4, world_from_clip: Mat4, direction: Vec3, far_depth: f32,
-        radiance: Vec3, reserved: f32,
+        radiance: Vec3, kind: u32, position: Vec3, radius: f32, spot_cosines: Vec2,
+        reserved_a: f32, reserved_b: f32,
     });
     twin!(twins: Sky {
         zenith: Vec3, reserved_a: f32, horizon: Vec3, reserved_b: f32, ground: Vec3, reserved_c: f32,

@@ -3,7 +3,7 @@
 
 use encase::ShaderType;
 use glam::dcamera::rh::{proj::directx, view};
-use glam::{DVec3, Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec2, Vec3};
 
 /// What makes a light impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -27,21 +27,38 @@ pub fn direction_from_angles(azimuth: f32, elevation: f32) -> Vec3 {
     Vec3::new(elevation.cos() * azimuth.sin(), elevation.sin(), elevation.cos() * azimuth.cos())
 }
 
-/// The uniform `Light` of `core/light`: a directional light and its standard shadow map.
+/// `kind` of a light at infinity.
+pub const DIRECTIONAL: u32 = 0;
+/// `kind` of a light at a point that shines into a cone.
+pub const SPOT: u32 = 1;
+/// `kind` of a light at a point that shines everywhere.
+pub const POINT: u32 = 2;
+
+/// The uniform `Light` of `core/light`: a light and its standard shadow map.
 #[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
 pub struct Light {
     /// World to the shadow map's clip space.
     pub clip_from_world: Mat4,
     /// Its inverse.
     pub world_from_clip: Mat4,
-    /// Unit vector TOWARDS the light.
+    /// Unit vector TOWARDS a directional light; of a spot, the reverse of its axis.
     pub direction: Vec3,
     /// Depth of an empty texel.
     pub far_depth: f32,
-    /// Linear RGB radiance.
+    /// Linear RGB irradiance at normal incidence, or radiant intensity of a light at a point.
     pub radiance: Vec3,
+    /// [`DIRECTIONAL`], [`SPOT`] or [`POINT`].
+    pub kind: u32,
+    /// Where a spot or point light is, metres.
+    pub position: Vec3,
+    /// Radius of a spot or point light, metres.
+    pub radius: f32,
+    /// Cosines of the half angles of a spot, inner and outer.
+    pub spot_cosines: Vec2,
     /// Padding.
-    pub reserved: f32,
+    pub reserved_a: f32,
+    /// Padding.
+    pub reserved_b: f32,
 }
 
 impl Light {
@@ -80,7 +97,12 @@ impl Light {
             direction: direction.as_vec3(),
             far_depth: 1.0,
             radiance,
-            reserved: 0.0,
+            kind: DIRECTIONAL,
+            position: Vec3::ZERO,
+            radius: 0.0,
+            spot_cosines: Vec2::ZERO,
+            reserved_a: 0.0,
+            reserved_b: 0.0,
         })
     }
 }

@@ -8,7 +8,7 @@ mod scan;
 mod tonemap;
 
 pub use camera::{Camera, CameraError, DepthRange, PerspectiveView};
-pub use light::{Light, LightError, direction_from_angles};
+pub use light::{DIRECTIONAL, Light, LightError, POINT, SPOT, direction_from_angles};
 pub use raster::{MeshBuffers, Pictures, Raster, Sky};
 pub use scan::Scan;
 pub use tonemap::{Tonemap, TonemapParameters};

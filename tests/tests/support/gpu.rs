@@ -440,6 +440,11 @@ pub fn host_light(
         direction: host_vector(towards.normalised()),
         far_depth: far_depth as f32,
         radiance,
-        reserved: 0.0,
+        kind: 0,
+        position: Vec3::ZERO,
+        radius: 0.0,
+        spot_cosines: Vec2::ZERO,
+        reserved_a: 0.0,
+        reserved_b: 0.0,
     }
 }

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Light shafts by prefiltered bases (thesis 4.3).
+
+use super::{BasisFormat, Inputs, Rectification, ScatteringError, Settings, check_size, picture_pass};
+use crate::gpu::Gpu;
+use crate::pass::{Bound, Pass, PassError};
+use crate::resource::{Sampler, Texture};
+use crate::shaders::Shaders;
+use wgpu::TextureFormat;
+
+/// Light shafts by prefiltered bases.
+pub struct Prefiltered {
+    settings: Settings,
+    /// The map that is filtered.
+    pub rectification: Rectification,
+    filter_pass: Pass,
+    evaluate_pass: Pass,
+    sampler: Sampler,
+    /// Filtered bases, M/4 layers.
+    pub bases: Texture,
+    /// Radiance, and visibility in alpha.
+    pub scattered: Texture,
+}
+
+/// Inputs bound to every pass of [`Prefiltered`].
+pub struct PrefilteredBound {
+    rectification: [Bound; 2],
+    filter: Bound,
+    evaluate: Bound,
+}
+
+impl Prefiltered {
+    /// Builds all passes and textures for pictures of `viewport` pixels.
+    ///
+    /// # Errors
+    /// [`ScatteringError`].
+    pub fn new(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        settings: Settings,
+        viewport: [u32; 2],
+    ) -> Result<Self, ScatteringError> {
+        settings.validate(gpu)?;
+        check_size(gpu, "a picture", viewport)?;
+        let format = match settings.format {
+            BasisFormat::Rgba8Unorm => TextureFormat::Rgba8Unorm,
+            BasisFormat::Rgba16Float => TextureFormat::Rgba16Float,
+        };
+        let [width, height] = settings.map;
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let filter = settings.filter_definitions();
+        let evaluate = settings.evaluate_definitions();
+        Ok(Self {
+            settings,
+            rectification: Rectification::new(gpu, shaders, settings.map)?,
+            filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
+            evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate", &evaluate, "fragment_evaluate")?,
+            sampler: Sampler::rows(gpu),
+            bases: Texture::array(gpu, [width, height, settings.bases / 4], format, usage),
+            scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
+        })
+    }
+
+    /// Binds the inputs.
+    ///
+    /// # Errors
+    /// [`PassError`].
+    pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<PrefilteredBound, PassError> {
+        let resources = [
+            ("camera", inputs.camera.into()),
+            ("light", inputs.light.into()),
+            ("medium", inputs.medium.into()),
+            ("frame", (&self.rectification.frame).into()),
+            ("slices", (&self.rectification.slices).into()),
+            ("depth", inputs.depth.into()),
+            ("shadow_map", inputs.shadow_map.into()),
+            ("rectified", (&self.rectification.rectified).into()),
+            ("bases", (&self.bases).into()),
+            ("bases_sampler", (&self.sampler).into()),
+        ];
+        Ok(PrefilteredBound {
+            rectification: self.rectification.bind(gpu, inputs)?,
+            filter: self.filter_pass.bind_known(gpu, &resources)?,
+            evaluate: self.evaluate_pass.bind_known(gpu, &resources)?,
+        })
+    }
+
+    /// Records everything from shadow map and depth buffer to radiance.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, bound: &PrefilteredBound) {
+        self.record_rectification(encoder, bound);
+        self.record_filter(encoder, bound);
+        self.record_evaluation(encoder, bound);
+    }
+
+    /// Records the bounds of the slices and the rectified map (thesis 4.4.1).
+    pub fn record_rectification(&self, encoder: &mut wgpu::CommandEncoder, bound: &PrefilteredBound) {
+        self.rectification.record(encoder, &bound.rectification);
+    }
+
+    /// Records the filter of the bases (thesis 4.3.3, Listings 4.1 to 4.3).
+    pub fn record_filter(&self, encoder: &mut wgpu::CommandEncoder, bound: &PrefilteredBound) {
+        let Settings { bases, bases_per_thread, map, .. } = self.settings;
+        let chunks = bases.div_ceil(bases_per_thread.min(bases));
+        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, 1]);
+    }
+
+    /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).
+    pub fn record_evaluation(&self, encoder: &mut wgpu::CommandEncoder, bound: &PrefilteredBound) {
+        self.evaluate_pass.fill(encoder, &bound.evaluate, &self.scattered);
+    }
+
+    /// Bytes of the textures between shadow map and picture.
+    pub fn memory(&self) -> u64 {
+        self.bases.memory() + self.rectification.rectified.memory() + self.rectification.slices.memory()
+    }
+}
