@@ -90,6 +90,9 @@ modules! {
     core::prefix_sum [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::single_scatter ["core::phase"],
+    scattering::local_light [
+        "core::camera", "core::phase", "scattering::rectify", "scattering::single_scatter"
+    ],
     scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
 }
 
