@@ -94,6 +94,7 @@ modules! {
     scattering::local_light [
         "core::camera", "core::phase", "scattering::rectify", "scattering::single_scatter"
     ],
+    scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
     scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
 }
 
