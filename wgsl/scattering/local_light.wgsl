@@ -234,20 +234,24 @@ fn sine_of_area(x: f32) -> f32 {
     return select(0.5 * (exp(x) - exp(-x)), series, x < 0.7);
 }
 
-/// The airlight integral on one side of the closest point. `side`: -1 before it, 1 beyond; `from_angle`, `to_angle`: what
-/// `equal_angle` lacks to pi/2 on that side; `stretch`: the scale within which the integrand changes fast near zero.
+/// The airlight integral on one side of the closest point. `side`: -1 before it, 1 beyond; `from_along`, `to_along`: metres from
+/// the closest point, not negative, the first less than the second; `stretch`: the scale within which the integrand changes fast near zero.
 fn airlight_side(
-    ray: LocalRay, side: f32, from_angle: f32, to_angle: f32, stretch: f32, extinction: f32, g: f32
+    ray: LocalRay, side: f32, from_along: f32, to_along: f32, stretch: f32, extinction: f32, g: f32
 ) -> f32 {
-    let first = area_sine(from_angle / stretch);
-    let last = area_sine(to_angle / stretch);
-    let middle = 0.5 * (first + last);
-    let half = 0.5 * (last - first);
+    let h = ray.softened;
+    // What `equal_angle` lacks to pi/2 on that side; the span by itself, for a difference would lose its figures.
+    let a = atan2(h, to_along) / stretch;
+    let b = atan2(h, from_along) / stretch;
+    let span = atan2(h * (to_along - from_along), h * h + from_along * to_along) / stretch;
+    let first = area_sine(a);
+    let half = 0.5 * area_sine(span * (a + b) / (b * sqrt(1.0 + a * a) + a * sqrt(1.0 + b * b)));
+    let middle = first + half;
     var sum = 0.0;
     for (var node = 0u; node < 8u; node++) {
         let at = middle + half * select(-NODES[node & 3u], NODES[node & 3u], node >= 4u);
         let angle = max(stretch * sine_of_area(at), 1e-12);
-        let along = clamp(ray.closest + side * ray.softened * cos(angle) / sin(angle), 0.0, 1e15);
+        let along = clamp(ray.closest + side * h * cos(angle) / sin(angle), 0.0, 1e15);
         let phase = henyey_greenstein(cosine_to_light(ray, along), g);
         let air = exp(-min(extinction * path_through_air(ray, along), 200.0));
         sum += WEIGHTS[node & 3u] * phase * air * cosh(at);
@@ -272,17 +276,13 @@ fn airlight(ray: LocalRay, extinction: f32, g: f32, from_along: f32, to_along: f
     let peak = clamp((1.0 - abs(g)) / sqrt(max(abs(g), 0.01)), 1e-3, 10.0);
     var sum = 0.0;
     if start < min(end, 0.0) {
-        let from_angle = atan2(ray.softened, -start);
-        let to_angle = atan2(ray.softened, -min(end, 0.0));
-        sum = airlight_side(ray, -1.0, from_angle, to_angle, select(10.0, peak, g > 0.0), extinction, g);
+        sum = airlight_side(ray, -1.0, max(-end, 0.0), -start, select(10.0, peak, g > 0.0), extinction, g);
     }
     if end > max(start, 0.0) {
         // Beyond the light the air dims over angles of about the optical depth of the closest distance.
-        let dims = max(extinction * ray.softened, 0.05);
-        let from_angle = atan2(ray.softened, end);
-        let to_angle = atan2(ray.softened, max(start, 0.0));
+        let dims = max(extinction * ray.softened, 0.01);
         let stretch = min(dims, select(10.0, peak, g < 0.0));
-        sum += airlight_side(ray, 1.0, from_angle, to_angle, stretch, extinction, g);
+        sum += airlight_side(ray, 1.0, max(start, 0.0), end, stretch, extinction, g);
     }
     return sum / ray.softened;
 }

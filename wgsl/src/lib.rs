@@ -90,12 +90,13 @@ modules! {
     core::phase [],
     core::prefix_sum [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
-    scattering::single_scatter ["core::phase"],
+    scattering::rows [],
+    scattering::single_scatter ["core::phase", "core::prefix_sum"],
     scattering::local_light [
         "core::camera", "core::phase", "scattering::rectify", "scattering::single_scatter"
     ],
     scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
-    scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
+    scattering::march ["core::finite", "core::light", "core::prefix_sum"],
 }
 
 passes! {

@@ -6,6 +6,7 @@
 // note: Non-finite depths count as empty.
 // note: The blocker on a light ray is the point of that ray at the stored depth, also where the texel is wide.
 // definition LOCAL: a spot or point light; columns are light angles.
+// definition DEPTH_WARP: stretch depths near the light, see warped_depth.
 // definition SHADOW_ARRAY: shadow maps of several views: cascades of a directional light, faces around a point light.
 // binding light: the light, directional without LOCAL, and its shadow map's clip space.
 // binding frame: the frame of the slices.
@@ -23,7 +24,8 @@
     angle_from_light_ray
 }
 #import airlight::scattering::rectify::{
-    Frame, row_azimuth, azimuth_direction, slice_from_texel, depth_from_blocker, depth_from_angle
+    Frame, row_azimuth, azimuth_direction, slice_from_texel, depth_from_blocker, depth_from_angle,
+    warped_depth
 }
 #import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, blocker_point}
 
@@ -108,9 +110,9 @@ fn rectify(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         let step = f32(column) + 0.5;
 #ifdef LOCAL
-        let depth = depth_of_light_ray(id.y, step / f32(size.x));
+        var depth = depth_of_light_ray(id.y, step / f32(size.x));
 #else ifdef SHADOW_ARRAY
-        let depth = depth_of_light_ray(id.y, step / f32(size.x));
+        var depth = depth_of_light_ray(id.y, step / f32(size.x));
 #else
         let at = start + step * stride;
         let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < map_size);
@@ -120,7 +122,10 @@ fn rectify(@builtin(global_invocation_id) id: vec3<u32>) {
         let height = (stored - at.z) * metres;
         let found = depth_from_blocker(slice, slice.radius_max * step / f32(size.x), height);
         let empty = !inside || stored == light.far_depth;
-        let depth = select(found, 1.0, empty);
+        var depth = select(found, 1.0, empty);
+#endif
+#ifdef DEPTH_WARP
+        depth = warped_depth(depth);
 #endif
         textureStore(rectified, vec2<u32>(column, id.y), vec4<f32>(depth, 0.0, 0.0, 1.0));
     }

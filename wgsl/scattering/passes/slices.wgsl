@@ -2,6 +2,7 @@
 // summary: The frame of the epipolar slices and the bounds of each, one thread a slice.
 // source: thesis 4.4.1 (bounds), 4.3.2 Eq. 4.12 (reference ray).
 // definition LOCAL: a spot or point light; its slices are bounded by light angles.
+// definition BISECTRIX: the reference ray is the bisectrix instead of the optimum of Eq. 4.12.
 // binding camera: the camera, perspective.
 // binding light: the light, directional without LOCAL.
 // binding medium: the medium; its distance limit bounds the slices.
@@ -13,7 +14,9 @@
 #import airlight::scattering::local_light::{
     place_of_light, distance_to_light, local_slice_bounds, local_slice_texel
 }
-#import airlight::scattering::rectify::{Frame, epipolar_frame, row_azimuth, slice_bounds, slice_texel}
+#import airlight::scattering::rectify::{
+    Frame, epipolar_frame, row_azimuth, slice_bounds, slice_texel, reference_bisectrix
+}
 #import airlight::scattering::single_scatter::Medium
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -40,7 +43,10 @@ fn slices_main(@builtin(global_invocation_id) id: vec3<u32>) {
     textureStore(slices, vec2<u32>(id.x, 0u), local_slice_texel(bounds));
 #else
     let around = epipolar_frame(camera, light.direction, rows);
-    let bounds = slice_bounds(camera, around, row_azimuth(around, f32(id.x)), medium.distance_limit);
+    var bounds = slice_bounds(camera, around, row_azimuth(around, f32(id.x)), medium.distance_limit);
+#ifdef BISECTRIX
+    bounds.reference = reference_bisectrix(bounds.angle_min, bounds.angle_max);
+#endif
     textureStore(slices, vec2<u32>(id.x, 0u), slice_texel(bounds));
 #endif
     if id.x == 0u {
