@@ -7,10 +7,16 @@
 //! with transmittance as weight (thesis Eq. 4.1, EQUATIONS.md 0).
 
 mod airlight;
+mod directional;
 mod frame;
+mod light_texture;
+mod local;
+mod local_light;
+mod local_rows;
 mod picture;
 mod projective;
 mod quadrature;
+mod reference_ray;
 mod shadow_map;
 mod slice;
 mod stretch;
@@ -21,10 +27,18 @@ mod views;
 mod visibility;
 
 pub use airlight::{Airlight, Complex, exponential_integral};
+pub use directional::shadow_views_picture;
 pub use frame::{Frame, Polar};
+pub use light_texture::LightTexture;
+pub use local::LocalScene;
+pub use local_light::{Cone, LocalLight};
+pub use local_rows::{EyeAtLight, LocalRay, LocalRows, LocalSlice, Over, Weights};
 pub use picture::{Light, Medium, Picture, Pixel, Scene, Start, ViewRay, picture};
 pub use projective::{Drift, Failure, Projective, light_in_view, projective_picture};
 pub use quadrature::integrate;
+pub use reference_ray::{
+    Fan, ReferenceRay, ReferenceRayError, filtered_bases, filtered_visibility, reference_ray_error,
+};
 pub use shadow_map::{RectifiedTexel, ShadowMap, rectify};
 pub use slice::{GUARD, Rectification, Slice};
 pub use stretch::{Stretch, stretch_visibility};
