@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Single scattering of a directional light in a homogeneous medium: the frame and slices of
-//! `docs/src/rectification.md`, the rectified map, exact visibility along view rays over it, whole
-//! pictures, and the truth without rectification.
+//! Single scattering in a homogeneous medium: of a directional light over the frame and slices of
+//! `docs/src/rectification.md` or over projective rows, and of a light at a point over local rows. For
+//! each the rectified map, exact visibility along view rays over it, whole pictures, and the truth
+//! without rectification.
 //!
-//! `L = albedo p(cos) radiance (1 − e^(−extinction s)) V`, V the visibility averaged along the ray
+//! For a directional light `L = albedo p(cos) radiance (1 − e^(−extinction s)) V`, V the visibility averaged along the ray
 //! with transmittance as weight (thesis Eq. 4.1, EQUATIONS.md 0).
 
 mod airlight;
@@ -39,9 +40,9 @@ pub use quadrature::integrate;
 pub use reference_ray::{
     Fan, ReferenceRay, ReferenceRayError, filtered_bases, filtered_visibility, reference_ray_error,
 };
-pub use shadow_map::{RectifiedTexel, ShadowMap, rectify};
+pub use shadow_map::{RectifiedTexel, ShadowMap, rectify, rectify_views};
 pub use slice::{GUARD, Rectification, Slice};
-pub use stretch::{Stretch, stretch_visibility};
+pub use stretch::{Stretch, rectified_picture, stretch_visibility};
 pub use truth::shadow_map_picture;
 pub use views::{LitRun, ShadowViews};
 pub use visibility::{RowEnd, Visibility, row_visibility, row_visibility_direct};

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Against the walk over one map, and closed forms.
 
-use super::super::picture::{Light, Medium, ViewRay};
+use super::super::picture::{Light, Medium, ViewRay, picture};
+use super::super::shadow_map::{rectify, rectify_views};
+use super::super::slice::Rectification;
+use super::super::stretch::rectified_picture;
 use super::super::test_scenes::{light_matrix, roof, stepped};
 use super::super::truth::shadow_map_picture;
 use super::*;
@@ -185,5 +188,38 @@ fn light_texture_passes_what_it_says() {
             let expected = clear.radiance[channel] * share;
             assert!((pixel.radiance[channel] - expected).abs() < 1e-7 * clear.radiance[channel]);
         }
+    }
+}
+
+#[test]
+fn rows_from_the_near_plane_and_over_cascades_come_near_to_the_truth() {
+    let up = Vec3::new(0.1, 1.0, 0.05);
+    let [fine, coarse] = [12.0, 64.0].map(|half| light_matrix(up, Vec3::default(), half, 1.0));
+    let stored = [fine, coarse].map(|clip_from_world| roof(clip_from_world, 1.0, 512));
+    let map = |i: usize| {
+        let clip_from_world = [fine, coarse][i];
+        ShadowMap { depth: &stored[i], width: 512, height: 512, clip_from_world, far_depth: 1.0 }
+    };
+    let maps = [map(0), map(1)];
+    let camera = cameras()[0];
+    let depth = sky(&camera);
+    let scene = scene(&camera, up, &depth);
+    let rectification = Rectification::new(&camera, up, 60.0, 1024, 256);
+    let texels = rectify_views(&maps, &rectification, 1e-3);
+    let one = rectify(&maps[1], &rectification, 1e-3);
+    assert_eq!(rectify_views(&maps[1..], &rectification, 1e-3).len(), one.len());
+    for (a, b) in rectify_views(&maps[1..], &rectification, 1e-3).iter().zip(&one) {
+        assert!((a.z - b.z).abs() < 1e-9 && (a.low - b.low).abs() < 1e-9 && (a.high - b.high).abs() < 1e-9);
+    }
+    assert!(texels.iter().zip(&one).any(|(a, b)| a.z != b.z));
+    let stored: Vec<f32> = texels.iter().map(|texel| texel.z as f32).collect();
+    let plain = picture(&scene, &rectification, &stored, 2).weighted();
+    for start in [Start::Eye, Start::NearPlane] {
+        let truth = shadow_views_picture(&scene, &maps, None, start, 2);
+        let found = rectified_picture(&scene, &rectification, &stored, start, 2);
+        let error = error::relative_rmse(&found.radiance(), &truth.radiance());
+        assert!(error < 5e-3, "{error} {start:?}");
+        let difference = error::max_absolute(&found.weighted(), &plain);
+        assert_eq!(difference < 1e-9, start == Start::Eye, "{difference}");
     }
 }
