@@ -108,6 +108,7 @@ passes! {
     scattering/filter,
     scattering/evaluate,
     scattering/march,
+    scattering/march_light,
     scattering/composite,
 }
 

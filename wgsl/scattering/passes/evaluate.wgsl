@@ -5,7 +5,14 @@
 // note: Around the light's place in the picture (and its antipode's) rays cover only a few texels and the light
 // note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
 // note: texels, very short rays included, blended in without a seam.
+// note: Around a spot or point light the mean of visibility times fall-off is taken out of the airlight integral, as the
+// note: mean visibility is in Eq. 4.2; the columns, linear in the angle at the light, hold the fall-off with distance.
 // definition BASES: number M of bases, as in the filter.
+// definition LOCAL: rows around a spot or point light. Not with REGIONS or NEAR_PLANE.
+// definition COLORS: 1 for the fall-off of a spot, 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
+// definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
+// definition PER_POINT: EPIPOLE_MARCH looks up every step by itself; needed with LOCAL, COLORS or SHADOW_ARRAY.
+// definition SHADOW_ARRAY: EPIPOLE_MARCH goes through the shadow maps of several views.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
 // definition AVERAGE: the bases are plain means, and so is that march.
@@ -14,13 +21,17 @@
 // definition NEAR_PLANE: rays, and the medium, begin at the near plane instead of the eye.
 // definition DEPTH_WARP: as in rectify.
 // binding camera: the camera, perspective.
-// binding light: the directional light and its shadow map's clip space.
+// binding light: the light, directional without LOCAL, and its shadow map's clip space.
 // binding medium: the medium.
 // binding frame: the frame of the slices.
 // binding slices: their bounds, rgba32float, one texel a slice.
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
-// binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH.
-// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
+// binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH, without SHADOW_ARRAY.
+// binding shadow_maps: depth of the views, a layer each; only with EPIPOLE_MARCH and SHADOW_ARRAY.
+// binding shadow_views: the views; only with EPIPOLE_MARCH and SHADOW_ARRAY.
+// binding light_texture: linear RGB 0..1 over the whole shadow map; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
+// binding light_sampler: linear, clamped to the edge; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
+// binding bases: filtered bases, M/4 layers, or what the filter makes with COLORS, rgba8unorm or rgba16float.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
@@ -29,13 +40,20 @@
 #import airlight::core::fourier_basis::{
     series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored
 }
-#import airlight::core::light::Light
+#import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
+#import airlight::core::phase::henyey_greenstein
 #import airlight::core::prefix_sum::prefix_weight
+#import airlight::core::shadow_views::{ShadowViews, view_position}
+#import airlight::scattering::local_light::{
+    distance_to_light, local_slice_from_texel, ray_bounds, light_angle, columns_covered, distance_from_light_angle,
+    local_ray, airlight, local_in_scattered, equal_angle, along_from_equal_angle, path_through_air, cosine_to_light
+}
 #import airlight::scattering::march::march_shadow_map
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin, prefix_column}
+#import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, lit_by_shadow}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -45,7 +63,16 @@
 @group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
 #ifdef EPIPOLE_MARCH
+#ifdef SHADOW_ARRAY
+@group(#{GROUP}) @binding(6) var shadow_maps: texture_2d_array<f32>;
+@group(#{GROUP}) @binding(10) var<uniform> shadow_views: ShadowViews;
+#else
 @group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
+#endif
+#ifdef LIGHT_TEXTURE
+@group(#{GROUP}) @binding(11) var light_texture: texture_2d<f32>;
+@group(#{GROUP}) @binding(12) var light_sampler: sampler;
+#endif
 #endif
 @group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
 #ifndef NEAREST
@@ -65,6 +92,45 @@ const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
+#ifdef COLORS
+/// One vector of the filtered bases, or of their fall-off, as stored, at `column` of a ray's row, in texels.
+fn stored_at(ray: RowRay, column: f32, layer: u32) -> vec4<f32> {
+    let size = vec2<f32>(textureDimensions(bases).xy);
+#ifdef NEAREST
+    let place = vec2<f32>(column, f32(nearest_row(frame, ray.row)));
+    return textureLoad(bases, vec2<u32>(clamp(place, vec2<f32>(0.0), size - 1.0)), layer, 0);
+#else
+    return textureSampleLevel(bases, bases_sampler, vec2<f32>(column, ray.row + 0.5) / size, layer, 0.0);
+#endif
+}
+
+/// Mean of visibility times fall-off of a ray for each colour, read at `column` of its row, in texels.
+fn filtered_colors(ray: RowRay, column: f32) -> vec3<f32> {
+    let falloff = stored_at(ray, column, u32(#{COLORS}) * LAYERS).rgb;
+    var lit = 0.5 * falloff;
+    var series = series_first(ray.depth);
+#ifdef LANCZOS
+    var window = series_first(1.0 / f32(4u * LAYERS));
+#endif
+    for (var layer = 0u; layer < LAYERS; layer++) {
+#ifdef LANCZOS
+        let factors = coefficients_lanczos(series, window, layer, 4u * LAYERS);
+        window = series_next(window);
+#else
+        let factors = coefficients(series, layer);
+#endif
+#ifdef LIGHT_TEXTURE
+        lit.x += dot(factors, basis_from_stored(stored_at(ray, column, layer)));
+        lit.y += dot(factors, basis_from_stored(stored_at(ray, column, LAYERS + layer)));
+        lit.z += dot(factors, basis_from_stored(stored_at(ray, column, 2u * LAYERS + layer)));
+#else
+        lit += dot(factors, basis_from_stored(stored_at(ray, column, layer)));
+#endif
+        series = series_next(series);
+    }
+    return clamp(lit, vec3<f32>(0.0), falloff);
+}
+#else
 /// The filtered series of a ray, read at `column` of its row, in texels.
 fn filtered_series(ray: RowRay, column: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(bases).xy);
@@ -94,7 +160,9 @@ fn filtered_series(ray: RowRay, column: f32) -> f32 {
     }
     return visibility;
 }
+#endif
 
+#ifndef COLORS
 /// Mean visibility of a ray over its stretch of the row. `reference_step`: optical depth of a texel by which the bases
 /// are weighted; `optical_step`: that of the ray itself, by which regions are put together.
 fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
@@ -123,8 +191,113 @@ fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
     }
     return select(0.0, sum / total, total > 0.0);
 }
+#endif
+
+#ifdef PER_POINT
+/// Visibility, 0 or 1, times fall-off and light texture at a point in the world, metres.
+fn lit_at(point: vec3<f32>) -> vec3<f32> {
+#ifdef SHADOW_ARRAY
+    let place = view_position(shadow_views, vec2<f32>(textureDimensions(shadow_maps)), point);
+    let visibility = lit_by_shadow(shadow_in_view(shadow_maps, place, light.far_depth), light.far_depth);
+#else
+    let visibility = lit_by_shadow(shadow_in_map(shadow_map, light, point), light.far_depth);
+#endif
+    let lit = vec3<f32>(visibility * angular_falloff(light, direction_to_light(light, point)));
+#ifdef LIGHT_TEXTURE
+    return lit * light_texture_color(light, light_texture, light_sampler, point);
+#else
+    return lit;
+#endif
+}
+
+#ifdef LOCAL
+/// Mean of `lit_at` over a view ray between two distances in metres, by steps of equal angle at the light; weighted by phase
+/// function and transmittance, unless `extinction` is zero. `cosine`, `sine`: of the ray's angle to the light.
+fn marched_light(
+    origin: vec3<f32>, direction: vec3<f32>, away: f32, cosine: f32, sine: f32, span: vec2<f32>, extinction: f32,
+    steps: u32, offset: f32
+) -> vec3<f32> {
+    let ray = local_ray(away, cosine, sine, light.radius);
+    let from_angle = equal_angle(ray, span.x);
+    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(steps, 1u));
+    // Weights in units of the first step's: finite however deep the stretch lies.
+    let first = path_through_air(ray, along_from_equal_angle(ray, from_angle + stride * offset));
+    var sum = vec3<f32>(0.0);
+    var total = 0.0;
+    for (var done = 0u; done < steps; done++) {
+        let along = along_from_equal_angle(ray, from_angle + stride * (f32(done) + offset));
+        let phase = henyey_greenstein(cosine_to_light(ray, along), medium.g);
+        let air = exp(-clamp(extinction * (path_through_air(ray, along) - first), 0.0, 80.0));
+        let weight = select(1.0, phase * air, extinction > 0.0);
+        sum += weight * lit_at(origin + along * direction);
+        total += weight;
+    }
+    return sum / max(total, 1e-30);
+}
+#else
+/// Mean of `lit_at` over a view ray between two distances in metres, by equal steps, weighted by transmittance.
+fn marched_light(
+    origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
+) -> vec3<f32> {
+    let stride = (span.y - span.x) / f32(max(steps, 1u));
+    var sum = vec3<f32>(0.0);
+    var total = 0.0;
+    for (var done = 0u; done < steps; done++) {
+        let along = stride * (f32(done) + offset);
+        let weight = exp(-min(extinction * stride * f32(done), 80.0));
+        sum += weight * lit_at(origin + (span.x + along) * direction);
+        total += weight;
+    }
+    return sum / max(total, 1.0);
+}
+#endif
+#endif
 
 /// Radiance, and mean visibility in alpha, of a pixel.
+#ifdef LOCAL
+fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
+    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
+    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+    let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
+    let slice = local_slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
+    let width = f32(textureDimensions(bases).x);
+    let away = distance_to_light(frame, light.position);
+    let texels = width * columns_covered(slice, light_angle(away, ray.cosine, ray.sine, ray.distance));
+    var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(ray_bounds(slice), ray));
+#ifdef DEPTH_WARP
+    row_ray.depth = warped_depth(row_ray.depth);
+#endif
+#ifdef COLORS
+    var lit = filtered_colors(row_ray, prefix_column(texels, 0.0));
+#else
+    var lit = vec3<f32>(clamp(filtered_series(row_ray, prefix_column(texels, 0.0)), 0.0, 1.0));
+#endif
+    // The stretch of the ray between the least and the greatest light angle of the slice.
+    let span = vec2<f32>(
+        distance_from_light_angle(away, ray.angle, slice.light_angle_min, ray.distance),
+        distance_from_light_angle(away, ray.angle, slice.light_angle_max, ray.distance)
+    );
+#ifdef EPIPOLE_MARCH
+#ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
+    let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
+    // A ray that ends before it comes into the light has nothing to march.
+    let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0 && span.y > span.x);
+    let marched = marched_light(
+        camera.eye, perspective_ray(camera, ndc).direction, away, ray.cosine, ray.sine, span, extinction, steps, 0.5
+    );
+    lit = mix(lit, marched, near_epipole);
+#endif
+    let integral = airlight(
+        local_ray(away, ray.cosine, ray.sine, light.radius), medium.extinction, medium.g, span.x, span.y
+    );
+    let radiance = local_in_scattered(medium, light.radiance, integral, lit);
+    return vec4<f32>(min(radiance, vec3<f32>(65504.0)), dot(lit, vec3<f32>(1.0 / 3.0)));
+}
+#else
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
@@ -150,28 +323,46 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #endif
     // Optical depth of a texel of a ray at right angles to the light.
     let across = extinction * slice.radius_max / width;
-#ifdef REGIONS
+#ifdef COLORS
+    var visibility = filtered_colors(row_ray, prefix_column(texels, 0.0));
+#else ifdef REGIONS
     var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
 #else ifdef NEAR_PLANE
     var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
 #else
     var visibility = filtered_series(row_ray, prefix_column(texels, 0.0));
 #endif
+#ifndef COLORS
     visibility = clamp(visibility, 0.0, 1.0);
+#endif
 
 #ifdef EPIPOLE_MARCH
     let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
     let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
     let direction = perspective_ray(camera, ndc).direction;
-    let marched = march_shadow_map(
+#ifdef PER_POINT
+    let marched = marched_light(camera.eye, direction, vec2<f32>(near, ray.distance), extinction, steps, 0.5);
+#else
+    let marched = vec3<f32>(march_shadow_map(
         shadow_map, light, camera.eye + near * direction, direction, ray.distance - near, extinction, steps, 0.5
-    );
+    ));
+#endif
+#ifdef COLORS
     visibility = mix(visibility, marched, near_epipole);
+#else
+    visibility = mix(visibility, marched.x, near_epipole);
+#endif
 #endif
 
+#ifdef COLORS
+    let radiance = visibility * in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, 1.0);
+    return vec4<f32>(min(radiance, vec3<f32>(65504.0)), dot(visibility, vec3<f32>(1.0 / 3.0)));
+#else
     let radiance = in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, visibility);
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
+#endif
 }
+#endif
 
 @compute @workgroup_size(16, 8)
 fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
