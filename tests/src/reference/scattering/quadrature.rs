@@ -23,7 +23,7 @@ const KRONROD: [f64; 8] = [
 ];
 /// Of every second node.
 const GAUSS: [f64; 4] =
-    [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_93, 0.417_959_183_673_469_4];
+    [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
 const DEEPEST: u32 = 40;
 
 /// The integrals of `N` functions between two places, each to about `tolerance` times the sum of the

@@ -118,21 +118,20 @@ fn light_ray_belongs_to_the_first_map_that_holds_it() {
     for camera in cameras() {
         let depth = sky(&camera);
         let scene = scene(&camera, up, &depth);
-        for (maps, dark, swapped) in [
-            ([map(&dark, small), map(&empty, wide)], [true, false], false),
-            ([map(&empty, small), map(&dark, wide)], [false, true], false),
-            ([map(&dark, wide), map(&empty, small)], [true, true], true),
+        for (maps, dark, first) in [
+            ([map(&dark, small), map(&empty, wide)], [true, false], 4.0),
+            ([map(&empty, small), map(&dark, wide)], [false, true], 4.0),
+            ([map(&dark, wide), map(&empty, small)], [true, false], 16.0),
         ] {
             let found = shadow_views_picture(&scene, &maps, None, Start::Eye, 3);
             for pixel in &found.pixels {
                 let ray = scene.ray(pixel.x, pixel.y, Start::Eye);
                 let expected = stepped(ray.begin, ray.end, 8192, |t| {
                     let point = ray.at(t);
-                    let wide_only = inside(point, 16.0) && !(inside(point, 4.0) && !swapped);
-                    let lit = if wide_only {
-                        !shade(point, 16.0, dark[1])
+                    let lit = if inside(point, first) {
+                        !shade(point, first, dark[0])
                     } else {
-                        !(inside(point, 4.0) && shade(point, 4.0, dark[0]))
+                        !(inside(point, 16.0) && shade(point, 16.0, dark[1]))
                     };
                     f64::from(u8::from(lit))
                 });
