@@ -242,7 +242,8 @@ fn angles_and_distances_belong_together() {
         ];
         // Two angles of f32 that all but make a half turn: the distance is as good as what they lack to it.
         let open = (PI - theta - at_light).abs().max(1e-3);
-        let budgets = [2e-6, 2e-6 * low / open + 1e-6 * away, 2e-6, 1e-5 * (away + along), 1e-4, 2e-4 * (away + along)];
+        // WGSL allows atan2 an error of 4096 units in the last place; this adapter has 3e-6.
+        let budgets = [4e-6, 2e-6 * low / open + 1e-6 * away, 4e-6, 1e-5 * (away + along), 1e-4, 2e-4 * (away + along)];
         for k in 0..6 {
             errors[k] = errors[k].max((f64::from(found[k]) - expected[k]).abs() / budgets[k]);
         }
