@@ -48,7 +48,7 @@ fn case(random: &mut Random) -> Case {
         theta: theta as f32,
         radius: (away * random.magnitude(1e-4, 0.1)) as f32,
         extinction: if random.unit() < 0.1 { 0.0 } else { (random.magnitude(1e-4, 10.0) / away) as f32 },
-        g: random.between(-0.9, 0.9) as f32,
+        g: random.between(-0.75, 0.9) as f32,
         from: if random.unit() < 0.5 { 0.0 } else { (to * random.unit()) as f32 },
         to: to as f32,
     }
