@@ -184,10 +184,11 @@ fn light_angle_of_column(slice: LocalSlice, unit: f32) -> f32 {
 }
 
 /// Weight in the means of a row of the column with the light angle `at_light`, positive, 1 at the light angle 0: phase function
-/// times transmittance on a ray midway between those of the slice that meet this light ray. `away`: of the light, metres.
+/// times transmittance on a ray between those of the slice that meet this light ray, nearer to the brighter ones: at the
+/// geometric mean of their angles, cf. Eq. 4.12. `away`: of the light, metres.
 fn column_weight(slice: LocalSlice, away: f32, at_light: f32, medium: Medium) -> f32 {
     let farthest = max(min(slice.angle_max, PI - at_light), slice.angle_min);
-    let angle = 0.5 * (slice.angle_min + farthest);
+    let angle = sqrt(max(slice.angle_min, 0.1 * farthest) * farthest);
     // (sin alpha + sin theta) / sin(alpha + theta): what the light passes through, over the distance to the light.
     let path = cos(0.5 * (at_light - angle)) / max(cos(0.5 * (at_light + angle)), 1e-6);
     let air = exp(-min(medium.extinction * away * max(path - 1.0, 0.0), 12.0));
