@@ -17,7 +17,8 @@ pub use medium::Medium;
 pub use prefiltered::{Prefiltered, PrefilteredBound};
 pub use rectification::{Frame, Rectification};
 pub use settings::{
-    BasisFormat, ScatteringError, Settings, SettingsError, Weighting, check_size, epipole_near_picture,
+    BasisFormat, Filtering, Reference, ScatteringError, Settings, SettingsError, Start, Weighting,
+    check_size, epipole_near_picture,
 };
 
 use crate::gpu::Gpu;
