@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // The competitor: min-max mipmaps along rows, traversed to the columns that neither side of a bound decides.
 // binding rectified: the rectified map.
 // binding nodes: its min-max mipmaps.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // The competitor: min-max mipmaps along rows, two children a node, climbed and descended without a stack.
 // binding rectified: the rectified map, for its size.
 // binding nodes: its min-max mipmaps.

@@ -9,7 +9,7 @@
 // binding slices: their bounds, rgba32float.
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
 
-#import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel, perspective_distance}
+#import airlight::core::camera::{Camera, ndc_from_pixel}
 #import airlight::core::finite::finite_or
 #import airlight::core::light::Light
 #import airlight::scattering::rectify::{Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray}
@@ -25,17 +25,14 @@
 /// Radiance, and average visibility in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
-    let ray = perspective_ray(camera, ndc);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
-    let distance = perspective_distance(camera, ndc, surface, medium.distance_limit);
-    let epipolar = epipolar_ray(frame, ray.direction);
-    let row = nearest_row(frame, epipolar.row);
+    let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
+    let row = nearest_row(frame, ray.row);
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     let columns = f32(row_columns());
-    let texels = clamp(columns * distance * epipolar.sine / slice.radius_max, 1e-3, columns);
-    let visibility = clamp(average_visibility(row, depth_from_ray(slice, epipolar), texels), 0.0, 1.0);
-    let cosine = dot(ray.direction, light.direction);
-    let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
+    let texels = clamp(columns * ray.distance * ray.sine / slice.radius_max, 1e-3, columns);
+    let visibility = clamp(average_visibility(row, depth_from_ray(slice, ray), texels), 0.0, 1.0);
+    let radiance = in_scattered(medium, light.radiance, ray.cosine, ray.distance, visibility);
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
 }
 

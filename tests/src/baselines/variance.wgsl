@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // The competitor: Chebyshev's one-sided bound from prefiltered moments, one look-up a ray.
 // definition EXPONENTIAL: of both exponential warps, the lesser of the two bounds.
 // binding moments: the filtered moments.

@@ -101,5 +101,5 @@ fn a_foreign_pass_is_composed_against_the_modules_of_the_library() {
     let library = library.with_pass("foreign", "p", "#import airlight::core::b\n");
     assert_eq!(library.passes().len(), 2);
     let error = library.compose("foreign/p", &definitions).unwrap_err();
-    assert_eq!(error.location().unwrap().to_string(), "foreign/passes/p.wgsl:1:1");
+    assert_eq!(error.location().unwrap().to_string(), "foreign/passes/p.wgsl:1:9");
 }
