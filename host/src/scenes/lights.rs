@@ -10,8 +10,8 @@ use crate::data::{
 };
 use crate::scattering::Medium;
 use crate::stage::Lighting;
-use glam::{Mat4, Quat, Vec2, Vec3};
-use std::f32::consts::TAU;
+use glam::{Mat4, Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
 
 const STONE: Vec3 = Vec3::new(0.46, 0.42, 0.37);
 
@@ -48,31 +48,30 @@ pub fn spot() -> Result<Scene, SceneError> {
     for x in [-1.6, 1.9] {
         mesh.append(&column(Vec3::new(x, 0.0, -3.6), 5.2, 0.3, STONE));
     }
-    mesh.append(&block(Vec3::new(0.35, 0.0, -1.85), Vec3::new(1.35, 0.12, -0.85), STONE));
-    mesh.append(&column(Vec3::new(0.85, 0.1, -1.35), 0.85, 0.3, STONE));
-    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.05).with_albedo(Vec3::new(0.74, 0.68, 0.62));
-    mesh.append(&placed(bunny, Vec3::new(0.87, 0.93, -1.35), -35.0));
+    let stand = Vec3::new(0.5, 0.0, -1.3);
+    for (half, low, high) in [(0.52, 0.0, 0.14), (0.40, 0.14, 0.86), (0.48, 0.86, 0.98)] {
+        let corner = Vec3::new(half, 0.0, half);
+        mesh.append(&block(stand - corner + Vec3::Y * low, stand + corner + Vec3::Y * high, STONE));
+    }
+    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.15).with_albedo(Vec3::new(0.74, 0.68, 0.62));
+    mesh.append(&placed(bunny, stand + Vec3::Y * 0.96, -40.0));
     Ok(Scene {
         name: "spot",
         title: "A spot through a barred window",
         mesh,
-        view: view(Vec3::new(2.7, 1.55, 5.2), Vec3::new(-1.25, 1.95, -1.6), 52.0, 0.1, 16.0),
+        view: view(Vec3::new(2.3, 1.5, 4.4), Vec3::new(-1.25, 1.75, -1.6), 49.0, 0.1, 16.0),
         light: Lighting::Spot {
-            position: Vec3::new(-8.6, 5.6, -1.0),
-            target: Vec3::new(0.6, 0.85, -1.3),
+            position: Vec3::new(-8.8, 5.1, -0.75),
+            target: Vec3::new(0.5, 0.9, -1.3),
             outer_degrees: 27.0,
             inner_degrees: 20.0,
-            intensity: Vec3::new(1500.0, 1180.0, 760.0),
+            intensity: Vec3::new(2100.0, 1560.0, 950.0),
             radius: 0.1,
         },
         light_texture: None,
         cascades: None,
-        sky: Sky::new(
-            Vec3::new(0.012, 0.018, 0.032),
-            Vec3::new(0.02, 0.026, 0.04),
-            Vec3::new(0.01, 0.009, 0.008),
-        ),
-        medium: Medium::new(0.05, Vec3::splat(0.95), 0.25, 24.0)?,
+        sky: Sky::new(Vec3::new(0.06, 0.09, 0.15), Vec3::new(0.08, 0.11, 0.16), Vec3::new(0.05, 0.045, 0.04)),
+        medium: Medium::new(0.07, Vec3::splat(0.95), 0.2, 24.0)?,
         exposure: 0.62,
     })
 }
@@ -98,16 +97,22 @@ pub fn lamp() -> Result<Scene, SceneError> {
     mesh.append(&block(Vec3::new(-6.0, 4.6, -2.95), Vec3::new(6.0, 5.0, -2.25), STONE));
     let centre = Vec3::new(0.0, 2.35, -0.5);
     let brass = Vec3::new(0.35, 0.22, 0.09);
-    // Diamonds in staggered rows, poles closed.
+    // Round holes in staggered rows, fewer towards the poles, which are closed.
+    const AROUND: u32 = 384;
+    const DOWN: u32 = 192;
     let open = |around: u32, down: u32| {
-        let (row, in_row) = (down / 6, down % 6);
-        let place = (around + 4 * (row % 2)) % 8;
-        let from_middle = (place as i32 * 2 - 7).abs() / 2 + (in_row as i32 * 2 - 5).abs() / 2;
-        (1..7).contains(&row) && from_middle < 3
+        let polar = (down as f32 + 0.5) / DOWN as f32 * PI;
+        let row = (polar / PI * 9.0).floor();
+        let middle = (row + 0.5) / 9.0 * PI;
+        let count = (16.0 * middle.sin()).round();
+        let place = (around as f32 + 0.5) / AROUND as f32 * count + 0.5 * (row % 2.0);
+        let across = (place - place.floor() - 0.5) * TAU / count * middle.sin();
+        let size = if row % 2.0 == 0.0 { 0.14 } else { 0.105 };
+        (1.0..8.0).contains(&row) && Vec2::new(across, polar - middle).length() < size
     };
-    let ball = perforated_ball(0.42, 112, 48, brass, open);
+    let ball = perforated_ball(0.42, AROUND, DOWN, brass, open);
     mesh.append(&ball.transformed(Mat4::from_translation(centre)));
-    for (y, radius) in [(0.0, 0.435), (0.40, 0.15), (-0.40, 0.15)] {
+    for (y, radius) in [(0.39, 0.16), (-0.39, 0.16)] {
         let ring = torus(radius, 0.02, 64, 12).with_albedo(brass);
         mesh.append(&ring.transformed(Mat4::from_translation(centre + Vec3::Y * y)));
     }
@@ -117,19 +122,19 @@ pub fn lamp() -> Result<Scene, SceneError> {
         brass,
     ));
     let head = standing(mesh_from_bytes(SUZANNE.0, SUZANNE.1)?, 0.95).with_albedo(Vec3::new(0.6, 0.45, 0.36));
-    mesh.append(&placed(head, Vec3::new(1.15, 0.0, 1.2), -35.0));
+    mesh.append(&placed(head, Vec3::new(1.75, 0.0, 0.5), -75.0));
     Ok(Scene {
         name: "lamp",
         title: "A pierced lantern",
         mesh,
         view: view(Vec3::new(-1.3, 1.25, 6.2), Vec3::new(0.05, 2.0, -0.6), 48.0, 0.1, 16.0),
-        light: Lighting::Point { position: centre, intensity: Vec3::new(62.0, 40.0, 19.0), radius: 0.06 },
+        light: Lighting::Point { position: centre, intensity: Vec3::new(84.0, 52.0, 23.0), radius: 0.06 },
         light_texture: None,
         cascades: None,
         sky: Sky::new(
-            Vec3::new(0.010, 0.014, 0.028),
-            Vec3::new(0.018, 0.02, 0.034),
-            Vec3::new(0.012, 0.009, 0.007),
+            Vec3::new(0.035, 0.045, 0.08),
+            Vec3::new(0.05, 0.055, 0.085),
+            Vec3::new(0.035, 0.028, 0.022),
         ),
         medium: Medium::new(0.06, Vec3::splat(0.95), 0.1, 20.0)?,
         exposure: 0.95,
@@ -150,44 +155,32 @@ pub fn glass() -> Result<Scene, SceneError> {
     mesh.append(&block(Vec3::new(-4.1, 7.0, -10.4), Vec3::new(4.0, 7.3, 6.0), STONE));
     for k in 0..4 {
         let z = -6.75 + 2.9 * k as f32;
-        mesh.append(&column(Vec3::new(2.3, 0.0, z), 5.6, 0.26, STONE));
+        if k < 3 {
+            mesh.append(&column(Vec3::new(2.3, 0.0, z), 5.6, 0.26, STONE));
+        }
         mesh.append(&block(Vec3::new(-3.6, 0.0, z - 0.2), Vec3::new(-3.25, 7.0, z + 0.2), STONE));
     }
     mesh.append(&block(Vec3::new(1.9, 5.6, -10.0), Vec3::new(2.7, 6.1, 6.0), STONE));
-    for k in 0..5 {
-        let z = -8.2 + 2.9 * k as f32;
-        mesh.append(&block(
-            Vec3::new(-0.2, 0.0, z - 0.25),
-            Vec3::new(1.5, 0.45, z + 0.2),
-            Vec3::new(0.2, 0.12, 0.07),
-        ));
-        mesh.append(&block(
-            Vec3::new(-0.2, 0.4, z - 0.3),
-            Vec3::new(1.5, 0.95, z - 0.22),
-            Vec3::new(0.2, 0.12, 0.07),
-        ));
-    }
-    let light = Lighting::directional(direction_from_angles(-78.0, 36.0), Vec3::new(30.0, 28.0, 25.0));
+    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.0).with_albedo(Vec3::splat(0.72));
+    mesh.append(&block(Vec3::new(-0.15, 0.0, -2.5), Vec3::new(0.75, 0.5, -1.6), STONE));
+    mesh.append(&placed(bunny, Vec3::new(0.3, 0.48, -2.05), -60.0));
+    let light = Lighting::directional(direction_from_angles(-84.0, 37.0), Vec3::new(52.0, 48.0, 44.0));
     let texture = leaded_glass(&mesh, &light, -3.85, &lancets);
     Ok(Scene {
         name: "glass",
         title: "Sun through stained glass",
         mesh,
-        view: view(Vec3::new(1.1, 1.55, 4.9), Vec3::new(-0.9, 2.35, -3.4), 55.0, 0.1, 18.0),
+        view: view(Vec3::new(1.55, 1.6, 4.2), Vec3::new(-0.75, 1.95, -3.4), 56.0, 0.1, 18.0),
         light,
         light_texture: Some(texture),
         cascades: None,
-        sky: Sky::new(
-            Vec3::new(0.035, 0.04, 0.055),
-            Vec3::new(0.07, 0.075, 0.09),
-            Vec3::new(0.022, 0.02, 0.018),
-        ),
+        sky: Sky::new(Vec3::new(0.07, 0.08, 0.11), Vec3::new(0.10, 0.11, 0.14), Vec3::new(0.06, 0.055, 0.05)),
         medium: Medium::new(0.055, Vec3::splat(0.96), 0.2, 20.0)?,
         exposure: 0.8,
     })
 }
 
-/// What the panes let through, in the light's shadow map: panes in the plane `x`, clear outside the openings.
+/// What the panes let through, in the light's shadow map: panes in the plane `x`, and no light beside them.
 fn leaded_glass(mesh: &Mesh, light: &Lighting, x: f32, lancets: &[Lancet]) -> LightImage {
     let bounds = mesh.bounds().unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
     // A light that cannot be fitted has no map to colour.
@@ -200,24 +193,24 @@ fn leaded_glass(mesh: &Mesh, light: &Lighting, x: f32, lancets: &[Lancet]) -> Li
             .iter()
             .enumerate()
             .find(|(_, lancet)| (at.z - lancet.centre).abs() < lancet.half + 0.3)
-            .map_or(Vec3::ONE, |(window, lancet)| {
+            .map_or(Vec3::ZERO, |(window, lancet)| {
                 pane(window, lancet, Vec2::new(at.z - lancet.centre, at.y - lancet.sill))
             })
     })
 }
 
-/// Colour of a window at a place across its axis and above its sill, metres.
+/// Colour of a window at a place across its axis and above its sill, metres. Every window has a hue of its own, which
+/// keeps the beams apart, and jewels of other hues in it.
 fn pane(window: usize, lancet: &Lancet, at: Vec2) -> Vec3 {
-    const JEWELS: [Vec3; 6] = [
-        Vec3::new(0.95, 0.04, 0.03),
-        Vec3::new(0.03, 0.10, 0.95),
-        Vec3::new(1.0, 0.55, 0.05),
-        Vec3::new(0.05, 0.65, 0.18),
-        Vec3::new(0.55, 0.06, 0.75),
-        Vec3::new(0.08, 0.55, 0.85),
+    const HUES: [[Vec3; 3]; 5] = [
+        [Vec3::new(0.55, 0.05, 0.75), Vec3::new(0.85, 0.10, 0.60), Vec3::new(0.95, 0.55, 0.08)],
+        [Vec3::new(0.04, 0.16, 0.95), Vec3::new(0.08, 0.50, 0.95), Vec3::new(0.95, 0.10, 0.06)],
+        [Vec3::new(0.04, 0.62, 0.24), Vec3::new(0.25, 0.85, 0.20), Vec3::new(0.95, 0.75, 0.12)],
+        [Vec3::new(1.0, 0.50, 0.04), Vec3::new(1.0, 0.74, 0.14), Vec3::new(0.06, 0.20, 0.90)],
+        [Vec3::new(0.95, 0.04, 0.03), Vec3::new(1.0, 0.26, 0.05), Vec3::new(0.05, 0.40, 0.90)],
     ];
     const LEAD: f32 = 0.022;
-    let jewel = |k: usize| JEWELS[k % JEWELS.len()];
+    let [main, light, jewel] = HUES[window % HUES.len()];
     let edge = lancet.half - at.x.abs();
     let top = lancet_height(at.x, lancet.half, lancet.height) - at.y;
     let border = edge.min(top).min(at.y);
@@ -227,7 +220,7 @@ fn pane(window: usize, lancet: &Lancet, at: Vec2) -> Vec3 {
     if border < 0.13 {
         let block = (at.y / 0.26).floor();
         let lead = (at.y - block * 0.26).min(block * 0.26 + 0.26 - at.y) < 0.5 * LEAD;
-        return if lead { Vec3::ZERO } else { jewel(window + 1 + block as usize % 2) };
+        return if lead { Vec3::ZERO } else { [jewel, light][block as usize % 2] };
     }
     // Medallions up the axis, diamonds around them.
     let cell = 0.92;
@@ -238,81 +231,102 @@ fn pane(window: usize, lancet: &Lancet, at: Vec2) -> Vec3 {
         return Vec3::ZERO;
     }
     if radius < 0.17 {
-        return jewel(window + 2);
+        return jewel;
     }
     if radius < 0.38 {
         let petals = 8.0;
         let around = (from.y.atan2(from.x) / TAU + 0.5) * petals;
         let lead = (around - around.round()).abs() / petals * TAU * radius < 0.5 * LEAD;
-        return if lead { Vec3::ZERO } else { jewel(window + around as usize % 2 * 3) };
+        return if lead { Vec3::ZERO } else { [light, main][around as usize % 2] };
     }
     let diagonal = Vec2::new(at.x + at.y, at.x - at.y) / 0.3;
-    let nearest = (diagonal - diagonal.round()).abs().min_element() * 0.3;
-    if nearest < 0.5 * LEAD {
+    if (diagonal - diagonal.round()).abs().min_element() * 0.3 < 0.5 * LEAD {
         return Vec3::ZERO;
     }
     let parity = (diagonal.x.floor() + diagonal.y.floor()).rem_euclid(3.0) as usize;
-    [jewel(window + 1), jewel(window + 5), Vec3::new(0.75, 0.85, 0.9)][parity]
+    [main, light, main][parity]
 }
 
-/// A round temple seen from afar without perspective, the sun between its columns.
+/// A hall cut open by the near plane, as architects draw a section: light falls through its roof onto a head.
 pub fn orthographic() -> Result<Scene, SceneError> {
-    let marble = Vec3::new(0.62, 0.58, 0.52);
-    let mut mesh = plane(Vec2::splat(36.0), 4).with_albedo(Vec3::new(0.15, 0.16, 0.13));
-    for (k, radius) in [3.9f32, 3.55, 3.2].into_iter().enumerate() {
-        // Steps are drums of many sides.
-        let top = 0.22 * (k + 1) as f32;
-        for side in 0..24 {
-            let turn = Quat::from_rotation_y(TAU * side as f32 / 48.0);
-            let width = radius * (TAU / 48.0).tan() * 1.01;
-            let slab = block(Vec3::new(-width, 0.0, -radius), Vec3::new(width, top, radius), marble);
-            mesh.append(&slab.transformed(Mat4::from_quat(turn)));
+    let plaster = Vec3::new(0.50, 0.46, 0.41);
+    let (half, depth, height) = (8.0, 4.0, 5.6);
+    let mut mesh = floor(-half, half, -depth, depth, 0.8, [Vec3::splat(0.34), Vec3::new(0.17, 0.16, 0.155)]);
+    for z in [-depth, depth] {
+        let (low, high) = if z < 0.0 { (z - 0.4, z) } else { (z, z + 0.4) };
+        mesh.append(&block(Vec3::new(-half, 0.0, low), Vec3::new(half, height, high), plaster));
+    }
+    for x in [-half, half] {
+        let (low, high) = if x < 0.0 { (x - 0.4, x) } else { (x, x + 0.4) };
+        mesh.append(&block(Vec3::new(low, 0.0, -depth), Vec3::new(high, height, depth), plaster));
+    }
+    // The roof is strips along x and z that leave square skylights.
+    let lights = [-5.2, -2.6, 0.0, 2.6, 5.2];
+    let (wide, rows) = (0.62, [-1.9, 0.5]);
+    let roof = |x: [f32; 2], z: [f32; 2]| {
+        block(Vec3::new(x[0], height, z[0]), Vec3::new(x[1], height + 0.35, z[1]), plaster)
+    };
+    let mut from = -half - 0.4;
+    for x in lights {
+        mesh.append(&roof([from, x - wide], [-depth - 0.4, depth + 0.4]));
+        let mut behind = -depth - 0.4;
+        for z in rows {
+            mesh.append(&roof([x - wide, x + wide], [behind, z - wide]));
+            behind = z + wide;
+            // Glazing bars.
+            for offset in [-0.2, 0.2] {
+                mesh.append(&roof([x + offset - 0.03, x + offset + 0.03], [z - wide, z + wide]));
+            }
         }
+        mesh.append(&roof([x - wide, x + wide], [behind, depth + 0.4]));
+        from = x + wide;
     }
-    let count = 12;
-    for k in 0..count {
-        let angle = TAU * (k as f32 + 0.5) / count as f32;
-        let at = Vec3::new(2.75 * angle.sin(), 0.66, 2.75 * angle.cos());
-        mesh.append(&column(at, 3.1, 0.24, marble));
+    mesh.append(&roof([from, half + 0.4], [-depth - 0.4, depth + 0.4]));
+    for x in [-6.5, -3.9, -1.3, 1.3, 3.9, 6.5] {
+        mesh.append(&column(Vec3::new(x, 0.0, -3.2), height, 0.3, plaster));
     }
-    let cornice = torus(2.75, 0.36, 96, 4).with_albedo(marble);
-    mesh.append(&cornice.transformed(Mat4::from_translation(Vec3::Y * 4.0)));
-    let head = standing(mesh_from_bytes(SUZANNE.0, SUZANNE.1)?, 1.7).with_albedo(Vec3::new(0.66, 0.30, 0.16));
-    mesh.append(&placed(head, Vec3::new(0.0, 0.66, 0.0), 45.0));
-    for (x, z, seed) in [(-5.6, -5.2, 3), (6.4, -4.6, 8)] {
-        let parameters =
-            TreeParameters { seed, leaves: 5000, clumps: 22, height: 5.2, ..TreeParameters::default() };
-        mesh.append(&placed(tree(&parameters), Vec3::new(x, -0.05, z), 0.0));
+    let stand = Vec3::new(-0.3, 0.0, -1.0);
+    for (half, low, high) in [(0.85, 0.0, 0.2), (0.65, 0.2, 0.9), (0.75, 0.9, 1.05)] {
+        let corner = Vec3::new(half, 0.0, half);
+        mesh.append(&block(stand - corner + Vec3::Y * low, stand + corner + Vec3::Y * high, plaster));
     }
+    let head = standing(mesh_from_bytes(SUZANNE.0, SUZANNE.1)?, 1.5).with_albedo(Vec3::new(0.70, 0.36, 0.20));
+    mesh.append(&placed(head, stand + Vec3::Y * 1.03, 20.0));
     Ok(Scene {
         name: "orthographic",
-        title: "A round temple without perspective",
+        title: "A hall in section, without perspective",
         mesh,
         view: OrthographicView {
-            eye: Vec3::new(9.0, 8.6, 12.0),
-            target: Vec3::new(0.0, 1.75, 0.0),
-            height: 9.6,
-            near: 0.5,
-            far: 36.0,
+            eye: Vec3::new(3.4, 3.7, 12.0),
+            target: Vec3::new(0.0, 2.62, -1.0),
+            height: 5.5,
+            near: 11.0,
+            far: 22.0,
             depth: DepthRange::Forward,
         }
         .into(),
-        light: Lighting::directional(direction_from_angles(250.0, 27.0), Vec3::new(10.0, 7.4, 4.6)),
+        light: Lighting::directional(direction_from_angles(-112.0, 56.0), Vec3::new(30.0, 22.0, 13.0)),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.05, 0.08, 0.15), Vec3::new(0.12, 0.13, 0.16), Vec3::new(0.03, 0.03, 0.025)),
-        medium: Medium::new(0.045, Vec3::splat(0.95), 0.1, 40.0)?,
-        exposure: 0.8,
+        sky: Sky::new(Vec3::new(0.14, 0.19, 0.27), Vec3::new(0.17, 0.2, 0.26), Vec3::new(0.13, 0.11, 0.10)),
+        medium: Medium::new(0.09, Vec3::splat(0.95), 0.0, 40.0)?,
+        exposure: 0.75,
     })
 }
 
 /// A wide valley with trees from near to far, one sun, four cascades.
 pub fn cascades() -> Result<Scene, SceneError> {
-    let parameters = TerrainParameters { seed: 5, size: 220.0, resolution: 512, height: 26.0 };
+    let parameters = TerrainParameters { seed: 5, size: 220.0, resolution: 400, height: 26.0 };
     let mut mesh = terrain(&parameters);
     let ground = |x, z| terrain_height(&parameters, x, z);
     let eye = Vec2::new(6.0, 62.0);
-    let leaves = |seed| TreeParameters { seed, leaves: 2600, clumps: 24, ..TreeParameters::default() };
+    let leaves = |seed| TreeParameters {
+        seed,
+        leaves: 5200,
+        clumps: 26,
+        leaf_length: 0.16,
+        ..TreeParameters::default()
+    };
     let kinds = [tree(&leaves(2)), tree(&leaves(6)), tree(&leaves(13))];
     for (k, (x, z, scale)) in [
         (1.2, 53.0, 1.0),
@@ -332,20 +346,20 @@ pub fn cascades() -> Result<Scene, SceneError> {
     .enumerate()
     {
         let planted = kinds[k % 3].clone().transformed(Mat4::from_scale(Vec3::splat(scale)));
-        mesh.append(&placed(planted, Vec3::new(x, ground(x, z) - 0.15, z), 67.0 * k as f32));
+        mesh.append(&placed(planted, Vec3::new(x, ground(x, z) - 0.35 * scale, z), 67.0 * k as f32));
     }
     let height = ground(eye.x, eye.y) + 3.2;
     Ok(Scene {
         name: "cascades",
         title: "A valley in four cascades",
         mesh,
-        view: view(Vec3::new(eye.x, height, eye.y), Vec3::new(0.0, height + 0.4, 20.0), 50.0, 0.2, 170.0),
-        light: Lighting::directional(direction_from_angles(196.0, 15.0), Vec3::new(9.5, 6.0, 3.2)),
+        view: view(Vec3::new(eye.x, height, eye.y), Vec3::new(1.0, height + 1.6, 20.0), 50.0, 0.2, 170.0),
+        light: Lighting::directional(direction_from_angles(196.0, 15.0), Vec3::new(9.0, 5.6, 2.9)),
         light_texture: None,
         cascades: Some(Cascades::new(4)),
         sky: Sky::new(Vec3::new(0.05, 0.09, 0.18), Vec3::new(0.26, 0.21, 0.18), Vec3::new(0.03, 0.03, 0.03)),
-        medium: Medium::new(0.0075, Vec3::splat(0.96), 0.5, 200.0)?,
-        exposure: 0.8,
+        medium: Medium::new(0.0055, Vec3::splat(0.96), 0.5, 200.0)?,
+        exposure: 0.7,
     })
 }
 

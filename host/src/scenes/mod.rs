@@ -220,3 +220,22 @@ pub fn framing(bounds: &Bounds, field_of_view: f32) -> PerspectiveView {
         distance + 2.0 * radius,
     )
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::core::Camera;
+
+    #[test]
+    fn every_scene_can_be_drawn() {
+        for name in SCENES {
+            let scene = scene(name).unwrap().unwrap();
+            assert_eq!(scene.name, name);
+            assert_eq!(scene.mesh.validate(), Ok(()), "{name}");
+            assert!(Camera::new(&scene.view, [160, 90]).is_ok(), "{name}");
+            assert!(scene.light.fitted(&scene.mesh.bounds().unwrap()).is_ok(), "{name}");
+        }
+        assert!(scene("nope").unwrap().is_none());
+    }
+}

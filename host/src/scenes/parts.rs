@@ -58,8 +58,8 @@ pub fn column(at: Vec3, height: f32, radius: f32, albedo: Vec3) -> Mesh {
     lathe(&profile, 40).transformed(Mat4::from_translation(at)).with_albedo(albedo)
 }
 
-/// Outline of a lancet: pairs of the height of its pointed arch over the sill and the place across, both in metres.
-/// `half`: half its width; `height`: of the point of the arch.
+/// Height over the sill of a pointed arch, metres, at a place `across` its axis. `half`: half its width; `height`: of its
+/// point.
 pub fn lancet_height(across: f32, half: f32, height: f32) -> f32 {
     // Two arcs with the width as radius, each around the other's foot.
     let rise = 3f32.sqrt() * half;
@@ -78,15 +78,6 @@ pub struct Lancet {
     pub sill: f32,
     /// Height of its point over the sill.
     pub height: f32,
-}
-
-impl Lancet {
-    /// True where a place along and above the foot of the wall lies in the opening.
-    pub fn holds(&self, along: f32, up: f32) -> bool {
-        let across = along - self.centre;
-        let top = self.sill + lancet_height(across, self.half, self.height);
-        across.abs() < self.half && up > self.sill && up < top
-    }
 }
 
 /// A wall in the plane x = 0 from z = `from` to `to` with pointed openings in order, `thick` metres towards -x.
@@ -142,7 +133,7 @@ fn quad(mesh: &mut Mesh, corners: [Vec3; 4], normal: Vec3) {
     mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
 }
 
-/// A hollow ball around the origin whose cells are open where `open` says so, for their place around and down (0..1).
+/// A hollow ball around the origin whose cells are open where `open` says so, for the number of\n/// the cell around and down.
 pub fn perforated_ball(
     radius: f32,
     segments: u32,
