@@ -164,6 +164,8 @@ pub fn glass() -> Result<Scene, SceneError> {
     let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.0).with_albedo(Vec3::splat(0.72));
     mesh.append(&block(Vec3::new(-0.15, 0.0, -2.5), Vec3::new(0.75, 0.5, -1.6), STONE));
     mesh.append(&placed(bunny, Vec3::new(0.3, 0.48, -2.05), -60.0));
+    // A garden wall: what is seen through the windows is air behind the glass, not the open sky.
+    mesh.append(&block(Vec3::new(-9.8, -0.3, -18.0), Vec3::new(-9.4, 4.2, 8.0), Vec3::splat(0.2)));
     let light = Lighting::directional(direction_from_angles(-84.0, 37.0), Vec3::new(52.0, 48.0, 44.0));
     let texture = leaded_glass(&mesh, &light, -3.85, &lancets);
     Ok(Scene {
@@ -185,7 +187,7 @@ fn leaded_glass(mesh: &Mesh, light: &Lighting, x: f32, lancets: &[Lancet]) -> Li
     let bounds = mesh.bounds().unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
     // A light that cannot be fitted has no map to colour.
     let Ok(light) = light.fitted(&bounds) else { return LightImage::from_function([1, 1], |_| Vec3::ONE) };
-    LightImage::from_function([1536, 1536], |uv| {
+    LightImage::from_function([2048, 2048], |uv| {
         let ndc = Vec3::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, 0.5);
         let point = light.world_from_clip.project_point3(ndc);
         let at = point + light.direction * ((x - point.x) / light.direction.x);
