@@ -58,13 +58,16 @@ fn perspective(depth: DepthRange, far: f32) -> View {
     })
 }
 
-fn orthographic(depth: DepthRange) -> View {
+/// An orthographic view whose rays pass its eye after `back` metres: where its eye lies is of no consequence.
+fn orthographic(depth: DepthRange, back: f32) -> View {
+    let (eye, target) = (Vec3::new(-6.0, 7.0, 4.0), Vec3::new(0.0, 0.5, 0.0));
+    let shift = (target - eye).normalize() * back;
     View::Orthographic(OrthographicView {
-        eye: Vec3::new(-6.0, 7.0, 4.0),
-        target: Vec3::new(0.0, 0.5, 0.0),
+        eye: eye + shift,
+        target: target + shift,
         height: 7.0,
-        near: 0.5,
-        far: FAR,
+        near: 0.5 - back,
+        far: FAR - back,
         depth,
     })
 }
@@ -75,8 +78,8 @@ fn views() -> [(&'static str, View); 6] {
         ("reversed", perspective(DepthRange::Reversed, FAR)),
         ("forward infinite", perspective(DepthRange::Forward, f32::INFINITY)),
         ("reversed infinite", perspective(DepthRange::Reversed, f32::INFINITY)),
-        ("orthographic forward", orthographic(DepthRange::Forward)),
-        ("orthographic reversed", orthographic(DepthRange::Reversed)),
+        ("orthographic forward", orthographic(DepthRange::Forward, 0.0)),
+        ("orthographic reversed", orthographic(DepthRange::Reversed, 15.0)),
     ]
 }
 
