@@ -90,6 +90,7 @@ modules! {
     core::prefix_sum [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::single_scatter ["core::phase"],
+    scattering::projective ["core::fourier_basis", "scattering::single_scatter"],
     scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
 }
 
@@ -99,6 +100,7 @@ passes! {
     core/tonemap,
     scattering/slices,
     scattering/rectify,
+    scattering/project,
     scattering/filter,
     scattering/evaluate,
     scattering/march,

@@ -9,6 +9,7 @@ mod tonemap;
 
 pub use camera::{Camera, CameraError, DepthRange, PerspectiveView};
 pub use light::{DIRECTIONAL, Light, LightError, POINT, SPOT, direction_from_angles};
+pub(crate) use raster::{MESH_VERTEX, begin};
 pub use raster::{MeshBuffers, Pictures, Raster, Sky};
 pub use scan::Scan;
 pub use tonemap::{Tonemap, TonemapParameters};

@@ -59,7 +59,7 @@ impl MeshBuffers {
         }
     }
 
-    fn draw(&self, render: &mut wgpu::RenderPass<'_>) {
+    pub(crate) fn draw(&self, render: &mut wgpu::RenderPass<'_>) {
         render.set_vertex_buffer(0, self.vertices.raw.slice(..));
         render.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
         render.draw_indexed(0..self.count, 0, 0..1);
@@ -74,7 +74,8 @@ pub struct Raster {
     sampler: Sampler,
 }
 
-const VERTEX: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+/// Layout of the vertices of [`MeshBuffers`].
+pub(crate) const MESH_VERTEX: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 36,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3],
@@ -92,11 +93,11 @@ impl Raster {
             Pass::render(gpu, &composed, &RenderStages { vertex, fragment, vertices, target, depth })
         };
         Ok(Self {
-            shadow: build("vertex_shadow", None, Some(VERTEX), None, less)?,
+            shadow: build("vertex_shadow", None, Some(MESH_VERTEX), None, less)?,
             surface: build(
                 "vertex_surface",
                 Some("fragment_surface"),
-                Some(VERTEX),
+                Some(MESH_VERTEX),
                 Some(Rgba16Float),
                 less,
             )?,
@@ -209,7 +210,8 @@ pub struct Pictures {
     pub depth: Texture,
 }
 
-fn begin<'a>(
+/// A render pass that clears its targets; depth to 1.
+pub(crate) fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     color: Option<&Texture>,
     depth: &Texture,

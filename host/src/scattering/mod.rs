@@ -8,6 +8,7 @@ mod composite;
 mod march;
 mod medium;
 mod prefiltered;
+mod projective;
 mod rectification;
 mod settings;
 
@@ -15,6 +16,10 @@ pub use composite::Composite;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
 pub use prefiltered::{Prefiltered, PrefilteredBound};
+pub use projective::{
+    Choice, OBLIQUENESS_LIMIT, Projective, ProjectiveError, ProjectiveRaster, ProjectiveRasterBound,
+    ProjectiveRows, ProjectiveSplit, choose, projective_rows,
+};
 pub use rectification::{Frame, Rectification};
 pub use settings::{
     BasisFormat, ScatteringError, Settings, SettingsError, Weighting, check_size, epipole_near_picture,
