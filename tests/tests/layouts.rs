@@ -4,10 +4,10 @@
 #![allow(clippy::unwrap_used)]
 
 use airlight::core::{Camera, Light, Sky, TonemapParameters};
-use airlight::scattering::{Frame, MarchParameters, Medium};
+use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
@@ -72,6 +72,19 @@ impl Sentinel for Vec3 {
     }
     fn words() -> Vec<(u32, u32)> {
         vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits())]
+    }
+}
+
+impl Sentinel for Vec4 {
+    const TYPE: &'static str = "vec4<f32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1.5, 2.5, 3.5, 4.5)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        (0..4).map(|i| (4 * i, (i as f32 + 1.5).to_bits())).collect()
     }
 }
 
@@ -140,6 +153,11 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         light: Vec3, azimuth_min: f32, axis_a: Vec3, rows_per_radian: f32,
         axis_b: Vec3, rows: f32, eye: Vec3, wraps: f32,
     });
+    twin!(twins: ProjectiveRows {
+        origin: Vec3, near: f32, along: Vec3, tilt: f32, across: Vec3, row_min: f32, away: Vec3, row_span: f32,
+        bounds: Vec4, depth_min: f32, depth_span: f32, splits: u32, projection: u32,
+    });
+    twin!(twins: ProjectiveSplit { clip_from_world: Mat4 });
     twin!(twins: MarchParameters { steps: u32, offset: f32, reserved_a: u32, reserved_b: u32 });
     twins
 }

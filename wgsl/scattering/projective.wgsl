@@ -210,3 +210,32 @@ fn filtered_column(rows: ProjectiveRows, width: f32, reach: f32, extinction: f32
     let share = select((here - first) * last / max(texel * here, 1e-37), 1.0, texel <= 1e-6 * last);
     return clamp(f32(column) - 0.5 + clamp(share, 0.0, 1.0), 0.5, width - 0.5);
 }
+
+/// Mean visibility of a view ray over `row` of a rectified map, weighted by transmittance: the exact sum over its
+/// texels. `extinction` in 1/m, 0 for the plain mean.
+fn march_projective_row(
+    map: texture_2d<f32>, rows: ProjectiveRows, row: u32, ray: ProjectiveRay, extinction: f32
+) -> f32 {
+    let size = textureDimensions(map);
+    let width = f32(size.x);
+    let first = min(u32(column_from_x(rows, width, ray.begin)), size.x - 1u);
+    let last = max(min(u32(column_from_x(rows, width, ray.end)), size.x - 1u), first);
+    var from_x = ray.begin;
+    var through = 1.0;
+    var sum = 0.0;
+    var total = 0.0;
+    var lit = false;
+    for (var column = first; column <= last; column++) {
+        lit = textureLoad(map, vec2<u32>(column, row), 0).x >= ray.depth;
+        let inner = clamp(texel_end(rows, width, column), from_x, max(ray.end, from_x));
+        let to_x = select(inner, max(ray.end, from_x), column == last);
+        let metres = (to_x - from_x) * ray.reach;
+        let weight = through * stretch_weight(extinction, metres);
+        sum += select(0.0, weight, lit);
+        total += weight;
+        through *= exp(-extinction * metres);
+        from_x = to_x;
+    }
+    // A ray of no length sees its texel.
+    return select(clamp(sum / max(total, 1e-37), 0.0, 1.0), select(0.0, 1.0, lit), total < 1e-30);
+}

@@ -9,6 +9,7 @@ mod march;
 mod medium;
 mod prefiltered;
 mod projective;
+mod projective_map;
 mod rectification;
 mod settings;
 
@@ -17,9 +18,10 @@ pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
 pub use prefiltered::{Prefiltered, PrefilteredBound};
 pub use projective::{
-    Choice, OBLIQUENESS_LIMIT, Projective, ProjectiveError, ProjectiveRaster, ProjectiveRasterBound,
-    ProjectiveRows, ProjectiveSplit, choose, projective_rows,
+    Choice, OBLIQUENESS_LIMIT, Projective, ProjectiveError, ProjectiveRows, ProjectiveSplit, choose,
+    projective_rows,
 };
+pub use projective_map::{ProjectiveMap, ProjectiveRaster, ProjectiveRasterBound};
 pub use rectification::{Frame, Rectification};
 pub use settings::{
     BasisFormat, ScatteringError, Settings, SettingsError, Weighting, check_size, epipole_near_picture,

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Projective rectification (thesis 4.4.2): the matrix, when it exists, and when it is worth taking.
 
-use crate::core::{Camera, MeshBuffers};
-use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, PassError, RenderStages};
-use crate::resource::{Buffer, Texture};
-use crate::shaders::Shaders;
+use crate::core::Camera;
 use encase::ShaderType;
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3, Vec4};
 
@@ -318,66 +314,4 @@ pub fn choose(camera: &Camera, towards_light: Vec3, distance_limit: f32, splits:
         Err(reason) => reason,
     };
     if camera.projection == 0 { Choice::Epipolar { reason } } else { Choice::March { reason } }
-}
-
-/// Draws meshes straight into a projectively rectified map.
-pub struct ProjectiveRaster {
-    pass: Pass,
-}
-
-/// The splits of a frame, bound.
-pub struct ProjectiveRasterBound {
-    splits: Vec<Bound>,
-}
-
-impl ProjectiveRaster {
-    /// Builds the pipeline.
-    ///
-    /// # Errors
-    /// [`PassError`].
-    pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, PassError> {
-        let stages = RenderStages {
-            vertex: "vertex_project",
-            fragment: Some("fragment_project"),
-            vertices: Some(crate::core::MESH_VERTEX),
-            target: None,
-            depth: Some((wgpu::CompareFunction::Less, true)),
-        };
-        Ok(Self { pass: Pass::render(gpu, &shaders.compose("scattering/project", "default")?, &stages)? })
-    }
-
-    /// Binds the matrices of a frame.
-    ///
-    /// # Errors
-    /// [`PassError`].
-    pub fn bind(&self, gpu: &Gpu, projective: &Projective) -> Result<ProjectiveRasterBound, PassError> {
-        let bind = |split| self.pass.bind(gpu, &[("split", (&Buffer::uniform(gpu, split)).into())]);
-        Ok(ProjectiveRasterBound { splits: projective.splits.iter().map(bind).collect::<Result<_, _>>()? })
-    }
-
-    /// Records all splits of `map`, a `Depth32Float` target. Split `k` of `K` owns the texels whose middle lies
-    /// between `k` and `k + 1` times `width / K`.
-    pub fn record(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        bound: &ProjectiveRasterBound,
-        meshes: &[MeshBuffers],
-        map: &Texture,
-    ) {
-        let [width, height, _] = map.size();
-        let mut render = crate::core::begin(encoder, None, map);
-        let share = width as f32 / bound.splits.len() as f32;
-        for (k, split) in bound.splits.iter().enumerate() {
-            let left = k as f32 * share;
-            let [first, end] = [left, left + share].map(|edge| (edge - 0.5).ceil().max(0.0) as u32);
-            let end = end.min(width);
-            if first >= end {
-                continue;
-            }
-            render.set_viewport(left, 0.0, share.min(width as f32 - left), height as f32, 0.0, 1.0);
-            render.set_scissor_rect(first, 0, end - first, height);
-            self.pass.set(&mut render, split);
-            meshes.iter().for_each(|mesh| mesh.draw(&mut render));
-        }
-    }
 }
