@@ -10,6 +10,7 @@ mod medium;
 mod prefiltered;
 mod projective;
 mod projective_map;
+mod projective_prefiltered;
 mod rectification;
 mod settings;
 
@@ -22,6 +23,7 @@ pub use projective::{
     projective_rows,
 };
 pub use projective_map::{ProjectiveMap, ProjectiveRaster, ProjectiveRasterBound};
+pub use projective_prefiltered::{ProjectivePrefiltered, ProjectivePrefilteredBound};
 pub use rectification::{Frame, Rectification};
 pub use settings::{
     BasisFormat, ScatteringError, Settings, SettingsError, Weighting, check_size, epipole_near_picture,

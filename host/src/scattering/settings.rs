@@ -61,6 +61,15 @@ pub enum BasisFormat {
     Rgba16Float,
 }
 
+impl BasisFormat {
+    pub(super) fn texture_format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+            Self::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        }
+    }
+}
+
 /// How the visibility along a ray is averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Weighting {

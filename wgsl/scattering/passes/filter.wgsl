@@ -7,22 +7,34 @@
 // note: Depths outside 0..1 are clamped, non-finite ones count as unblocked.
 // definition BASES: number M of bases, a multiple of 4 from 4 to 128.
 // definition BASES_PER_THREAD: bases a thread filters, a multiple of 4.
+// definition PROJECTIVE: projective rows, whose texels differ in length, instead of epipolar slices.
 // definition AVERAGE: plain means (average visibility) instead of means weighted by transmittance.
 // definition RGBA16FLOAT: store as rgba16float instead of rgba8unorm.
 // binding medium: the medium, for its extinction; absent with AVERAGE.
-// binding slices: bounds of the slices, rgba32float; absent with AVERAGE.
+// binding slices: bounds of the slices, rgba32float; absent with AVERAGE and with PROJECTIVE.
+// binding rows: the projective rows; with PROJECTIVE only.
 // binding rectified: the rectified map, depth 0..1.
 // binding bases: out, M/4 layers of the filtered bases; -1..1 is stored as 0..1.
 
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis, surface_bias}
 #import airlight::core::prefix_sum::{row_weights, row_weights_next, running_mean}
+#ifdef PROJECTIVE
+#import airlight::core::prefix_sum::RowWeights
+#import airlight::scattering::projective::{ProjectiveRows, reference_reach, texel_begin, texel_end, stretch_weight}
+#else
 #import airlight::scattering::rectify::slice_from_texel
+#endif
 #import airlight::scattering::single_scatter::Medium
 
 #ifndef AVERAGE
 @group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
+#ifndef PROJECTIVE
 @group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
+#endif
+#endif
+#ifdef PROJECTIVE
+@group(#{GROUP}) @binding(4) var<uniform> rows: ProjectiveRows;
 #endif
 @group(#{GROUP}) @binding(2) var rectified: texture_2d<f32>;
 #ifdef RGBA16FLOAT
@@ -42,7 +54,18 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS {
         return;
     }
+#ifdef PROJECTIVE
 #ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
+    let reach = reference_reach(rows, f32(size.y), f32(row));
+    // The weight of a texel, the sum of all so far, and the transmittance of the texel.
+    var weights = RowWeights(0.0, 0.0, 1.0);
+    var through = 1.0;
+    var edge = texel_begin(rows, f32(size.x), 0u);
+#else ifdef AVERAGE
     var weights = row_weights(0.0);
 #else
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
@@ -51,6 +74,14 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     var means = array<vec4<f32>, PER_THREAD>();
     for (var column = 0u; column < size.x; column++) {
         let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
+#ifdef PROJECTIVE
+        let next = texel_end(rows, f32(size.x), column);
+        let metres = (next - edge) * reach;
+        weights.weight = through * stretch_weight(extinction, metres);
+        weights.total += weights.weight;
+        through *= exp(-extinction * metres);
+        edge = next;
+#endif
         var series = series_at(min(depth + surface_bias(4u * LAYERS), 1.0), first);
         for (var group = 0u; group < PER_THREAD; group++) {
             means[group] = running_mean(means[group], series.basis, weights);
@@ -59,6 +90,8 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
             }
             series = series_next(series);
         }
+#ifndef PROJECTIVE
         weights = row_weights_next(weights);
+#endif
     }
 }
