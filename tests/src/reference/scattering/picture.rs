@@ -129,7 +129,57 @@ impl Picture {
     }
 }
 
+/// Where the medium begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Start {
+    /// At the eye; on the near plane of an orthographic camera.
+    #[default]
+    Eye,
+    /// On the near plane: a view ray scatters and takes light from there on only.
+    NearPlane,
+}
+
+/// The part of a view ray that lies in the medium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewRay {
+    /// Where the view ray begins, world, metres: the eye, or a point of an orthographic near plane.
+    pub origin: Vec3,
+    /// Its unit direction, into the scene.
+    pub direction: Vec3,
+    /// Where the medium begins, metres from the origin.
+    pub begin: f64,
+    /// Where the ray ends, metres from the origin, at least `begin`.
+    pub end: f64,
+}
+
+impl ViewRay {
+    /// The point at a distance from the origin, metres.
+    #[must_use]
+    pub fn at(&self, distance: f64) -> Vec3 {
+        self.origin + self.direction * distance
+    }
+
+    /// Length in the medium, metres.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.end - self.begin
+    }
+}
+
 impl Scene<'_> {
+    /// The part of a pixel's view ray that lies in the medium. The distance limit counts from the
+    /// origin of the ray.
+    #[must_use]
+    pub fn ray(&self, x: usize, y: usize, start: Start) -> ViewRay {
+        let (direction, end) = self.view_ray(x, y);
+        let origin = self.camera.origin(Camera::pixel_ndc(x, y, self.width, self.height));
+        let begin = match start {
+            Start::Eye => 0.0,
+            Start::NearPlane => self.camera.near / direction.dot(self.camera.forward),
+        };
+        ViewRay { origin, direction, begin: begin.min(end), end }
+    }
+
     /// Unit direction of a pixel's view ray and its length in the medium, metres.
     #[must_use]
     pub fn view_ray(&self, x: usize, y: usize) -> (Vec3, f64) {
@@ -138,23 +188,40 @@ impl Scene<'_> {
         (self.camera.ray(ndc), distance.min(self.medium.distance_limit))
     }
 
-    /// Every `stride`-th pixel, with the visibility that `visibility` gives for a direction and a
-    /// distance.
+    /// Every `stride`-th pixel, with the visibility that `visibility` gives for the part of its ray
+    /// in the medium; radiance by [`Medium::radiance`].
     ///
     /// # Panics
     /// For a depth buffer of another size, and a stride of 0.
     pub(super) fn evaluate(
         &self,
         stride: usize,
-        visibility: impl Fn(Vec3, f64) -> Visibility + Sync,
+        start: Start,
+        visibility: impl Fn(&ViewRay) -> Visibility + Sync,
+    ) -> Picture {
+        self.evaluate_radiance(stride, start, |ray| {
+            let found = visibility(ray);
+            let radiance = self.medium.radiance(&self.light, ray.direction, ray.length(), found.weighted);
+            (found, radiance)
+        })
+    }
+
+    /// Every `stride`-th pixel, with the visibility and radiance of the part of its ray in the medium.
+    ///
+    /// # Panics
+    /// For a depth buffer of another size, and a stride of 0.
+    pub(super) fn evaluate_radiance(
+        &self,
+        stride: usize,
+        start: Start,
+        radiance: impl Fn(&ViewRay) -> (Visibility, [f64; 3]) + Sync,
     ) -> Picture {
         assert_eq!(self.depth.len(), self.width * self.height, "size of the depth buffer");
         let (columns, rows) = (self.width.div_ceil(stride), self.height.div_ceil(stride));
         let pixel = |x: usize, y: usize| {
-            let (direction, distance) = self.view_ray(x, y);
-            let Visibility { average, weighted } = visibility(direction, distance);
-            let radiance = self.medium.radiance(&self.light, direction, distance, weighted);
-            Pixel { x, y, distance, average, weighted, radiance }
+            let ray = self.ray(x, y, start);
+            let (Visibility { average, weighted }, radiance) = radiance(&ray);
+            Pixel { x, y, distance: ray.length(), average, weighted, radiance }
         };
         let pixels = crate::parallel::rows(rows, |row| {
             (0..columns).map(|column| pixel(column * stride, row * stride)).collect::<Vec<_>>()
@@ -177,7 +244,6 @@ pub fn picture<T: Copy + Into<f64> + Sync>(
     stride: usize,
 ) -> Picture {
     let extinction = scene.medium.extinction;
-    scene.evaluate(stride, |direction, distance| {
-        rectification.visibility(map, direction, distance, extinction)
-    })
+    scene
+        .evaluate(stride, Start::Eye, |ray| rectification.visibility(map, ray.direction, ray.end, extinction))
 }

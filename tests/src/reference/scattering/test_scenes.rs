@@ -72,3 +72,18 @@ pub(super) fn light_matrix(towards_light: Vec3, centre: Vec3, half: f64, far_dep
         [0.0, 0.0, 0.0, 1.0],
     ])
 }
+
+/// A shadow map of a horizontal roof over x > 0 at the height 5, rendered texel by texel.
+pub(super) fn roof(clip_from_world: Mat4, far_depth: f64, side: usize) -> Vec<f32> {
+    let world_from_clip = clip_from_world.inverse().expect("regular");
+    (0..side * side)
+        .map(|i| {
+            let u = ((i % side) as f64 + 0.5) / side as f64 * 2.0 - 1.0;
+            let v = 1.0 - ((i / side) as f64 + 0.5) / side as f64 * 2.0;
+            let [near, far] = [0.0, 1.0].map(|z| world_from_clip.apply([u, v, z, 1.0]));
+            let t = (5.0 - near[1]) / (far[1] - near[1]);
+            let x = near[0] + (far[0] - near[0]) * t;
+            (if x > 0.0 { t } else { far_depth }) as f32
+        })
+        .collect()
+}

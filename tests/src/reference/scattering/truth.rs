@@ -3,7 +3,7 @@
 //! texel, exact in f64. What a method over the rectified map differs from this by is the error of
 //! rectification.
 
-use super::picture::{Picture, Scene};
+use super::picture::{Picture, Scene, Start};
 use super::shadow_map::ShadowMap;
 use super::visibility::Visibility;
 use crate::linear::Vec3;
@@ -19,11 +19,10 @@ pub fn shadow_map_picture(scene: &Scene<'_>, shadow_map: &ShadowMap<'_>, stride:
     assert_eq!(shadow_map.depth.len(), shadow_map.width * shadow_map.height);
     let [x, y, z, w] = shadow_map.clip_from_world.row(3);
     assert!([x, y, z] == [0.0; 3] && w > 0.0, "an orthographic shadow map");
-    let eye = scene.camera.eye;
-    scene.evaluate(stride, |direction, distance| {
-        assert!(distance.is_finite(), "a view ray without end");
-        let run = Run::new(shadow_map, eye, direction);
-        run.visibility(distance, scene.medium.extinction)
+    scene.evaluate(stride, Start::Eye, |ray| {
+        assert!(ray.end.is_finite(), "a view ray without end");
+        let run = Run::new(shadow_map, ray.origin, ray.direction);
+        run.visibility(ray.end, scene.medium.extinction)
     })
 }
 
