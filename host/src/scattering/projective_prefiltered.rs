@@ -91,9 +91,19 @@ impl ProjectivePrefiltered {
     /// Records everything from the map, which is resampled here unless it is drawn, to radiance.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, bound: &ProjectivePrefilteredBound) {
         self.map.record(encoder, bound.resample.as_ref());
+        self.record_filter(encoder, bound);
+        self.record_evaluation(encoder, bound);
+    }
+
+    /// Records the filter of the bases (thesis 4.3.3, Listings 4.1 to 4.3).
+    pub fn record_filter(&self, encoder: &mut wgpu::CommandEncoder, bound: &ProjectivePrefilteredBound) {
         let Settings { bases, bases_per_thread, map, .. } = self.settings;
         let chunks = bases.div_ceil(bases_per_thread.min(bases));
         self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, 1]);
+    }
+
+    /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).
+    pub fn record_evaluation(&self, encoder: &mut wgpu::CommandEncoder, bound: &ProjectivePrefilteredBound) {
         self.evaluate_pass.fill(encoder, &bound.evaluate, &self.scattered);
     }
 }
