@@ -21,7 +21,6 @@ use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicV
 use airlight_tests::reference::scattering as reference;
 use glam::{DVec4, Mat4, Vec2, Vec3};
 use gpu::{Probe, Random, gpu, shaders};
-use wgpu::TextureFormat::R32Float;
 
 const PICTURE: [u32; 2] = [480, 270];
 
@@ -57,6 +56,28 @@ fn light_for(random: &mut Random, camera: &ReferenceCamera) -> linear::Vec3 {
     } else {
         random.direction().without(camera.forward).normalised()
     }
+}
+
+/// Whether the light or its antipode is about as far from the picture's centre as its border, by the sine of the angle.
+fn next_to_the_border(camera: &ReferenceCamera, light: linear::Vec3, sine: f64) -> bool {
+    let sides = camera.side_normals().map(|n| n.dot(light.normalised()));
+    let inside = |sign: f64| sides.iter().fold(f64::INFINITY, |least, side| least.min(sign * side));
+    !camera.is_orthographic() && (inside(1.0).abs() < sine || inside(-1.0).abs() < sine)
+}
+
+/// Error of the direction of view rays, radians, by the rounding of an f32 matrix from clip space to the world: with a
+/// finite far plane and forward depth they are the difference of numbers as large as the eye's place over the near
+/// distance.
+fn matrix_rounding(camera: &ReferenceCamera) -> f64 {
+    let cancels = !camera.is_orthographic() && camera.far.is_finite() && camera.far_depth > 0.5;
+    if cancels { 2e-7 * camera.eye.length() / camera.near } else { 0.0 }
+}
+
+/// A light outside of the picture: at a corner for 0, at a right angle to the view for 1.
+fn light_beside_corner(camera: &ReferenceCamera, turn: f64) -> Vec3 {
+    let corner = camera.corners()[2];
+    let beside = corner.without(camera.forward).normalised();
+    gpu::host_vector((corner * (1.0 - turn) + beside * turn).normalised())
 }
 
 /// The numbers of the uniform, in its order.
@@ -107,7 +128,7 @@ fn cases(count: usize) -> Vec<Case> {
             continue;
         };
         // Next to the limits the precision of f32 matrices decides.
-        if projective.obliqueness > 100.0 {
+        if projective.obliqueness > 100.0 || next_to_the_border(&camera, light, 1e-3) {
             continue;
         }
         let reference = reference::Projective::new(&camera, light, f64::from(LIMIT), SIZE, splits).unwrap();
@@ -162,15 +183,22 @@ fn view_rays_are_rows_light_rays_columns_and_all_of_the_frustum_is_inside() {
                 let divisor = if camera.is_orthographic() { 1.0 } else { x };
                 4e-7 * metres * (1.0 + slope.abs()) / (span * divisor)
             };
+            let corner =
+                camera.corners().map(|d| reference.axes[0].dot(d).recip()).into_iter().fold(1.0, f64::max);
+            let greatest = |range: [f64; 2]| 1.0 + range[0].abs().max(range[1].abs());
+            let of = |range: [f64; 2]| {
+                1e-5 + (1e-6 + matrix_rounding(camera)) * corner * greatest(range) / (range[1] - range[0])
+            };
             let expected_row = (row - reference.y[0]) / span[0];
             let expected_depth = 0.05 + 0.9 * (depth - reference.z[0]) / span[1];
-            worst[0] = worst[0].max((0.5 - 0.5 * v - expected_row).abs() / (1e-5 + ratio(row, span[0])));
-            worst[1] = worst[1].max((z - expected_depth).abs() / (1e-5 + ratio(depth, span[1])));
+            worst[0] =
+                worst[0].max((0.5 - 0.5 * v - expected_row).abs() / (of(reference.y) + ratio(row, span[0])));
+            worst[1] = worst[1].max((z - expected_depth).abs() / (of(reference.z) + ratio(depth, span[1])));
             let texels = SIZE[0] as f64 / projective.splits.len() as f64;
             let column = (split as f64 + 0.5 + 0.5 * u) * texels;
             // A finite far plane of forward depth is known as well as an f32 matrix holds it.
             let plane = 3e-7 * camera.far.min(1e4) / camera.near.max(1e-3);
-            let fine = (1e-5 + 2.0 * ratio(1.0, 1.0) + plane) * SIZE[0] as f64;
+            let fine = 0.1 * (1e-5 + 2.0 * ratio(1.0, 1.0) + plane) * SIZE[0] as f64;
             worst[2] = worst[2].max((column - reference.column(x)).abs() / fine);
             let inside = |value: f64| (-1e-3..=1.001).contains(&value);
             assert!(
@@ -259,10 +287,17 @@ fn shader_places_points_and_rays_as_the_reference_does() {
         let [x, ..] = reference.coordinates(point);
         let [row, depth] = reference.slopes(point);
         let span = [reference.y[1] - reference.y[0], reference.z[1] - reference.z[0]];
-        // Rounding of the point itself, then of slopes over their range.
+        // Rounding of the point itself, and of the corner rays' slopes, which the ranges are made of.
         let metres = point.length() + case.camera.eye.length() + 1.0;
-        let divisor = if reference.orthographic.is_some() { 1.0 } else { x };
-        let of = |slope: f64, span: f64| (1e-6 + 3e-7 * metres / divisor) * (1.0 + slope.abs()) / span + 1e-6;
+        let level = reference.orthographic.is_some();
+        let divisor = if level { 1.0 } else { x };
+        let corner =
+            case.camera.corners().map(|d| reference.axes[0].dot(d).recip()).into_iter().fold(0.0, f64::max);
+        let steep = if level { metres } else { 1.0 + corner };
+        let greatest = |range: [f64; 2]| 1.0 + range[0].abs().max(range[1].abs());
+        let matrix = 1e-6 + matrix_rounding(&case.camera);
+        let of = |range: [f64; 2]| matrix * steep * greatest(range) / (range[1] - range[0]) + 1e-6;
+        let point_of = |range: [f64; 2]| of(range) * (1.0 + 0.3 * metres / divisor);
         let oblique = f64::from(case.projective.obliqueness);
         let expected_row = (row - reference.y[0]) / span[0] * 40.0 - 0.5;
         let expected_depth = 0.05 + 0.9 * (depth - reference.z[0]) / span[1];
@@ -272,32 +307,19 @@ fn shader_places_points_and_rays_as_the_reference_does() {
             * 96.0;
         if x > reference.near {
             note(0, (found[0] - reference.column(x)).abs(), near);
-            note(1, (found[1] - expected_row).abs(), 40.0 * of(row, span[0]));
-            note(2, (found[2] - expected_depth).abs(), of(depth, span[1]));
+            note(1, (found[1] - expected_row).abs(), 40.0 * point_of(reference.y));
+            note(2, (found[2] - expected_depth).abs(), point_of(reference.z));
         }
-        let steep = if reference.orthographic.is_some() {
-            metres
-        } else {
-            1.0 + 1.0 / reference.axes[0].dot(direction)
-        };
-        note(
-            1,
-            (found[3] - expected_row.clamp(0.0, 39.0)).abs(),
-            40.0 * 2e-6 * steep * (1.0 + row.abs()) / span[0],
-        );
-        note(
-            2,
-            (found[4] - expected_depth.clamp(0.05, 0.95)).abs(),
-            2e-6 * steep * (1.0 + depth.abs()) / span[1],
-        );
+        note(1, (found[3] - expected_row.clamp(0.0, 39.0)).abs(), 40.0 * of(reference.y));
+        note(2, (found[4] - expected_depth.clamp(0.05, 0.95)).abs(), of(reference.z));
         let scale = reference.far.abs().max(reference.near.abs()) + metres;
         let begin = if reference.orthographic.is_some() { reference.coordinates(origin)[0] } else { 0.0 };
         note(3, (found[5] - begin).abs().max((found[6] - x).abs()), 2e-6 * scale);
         note(3, (found[7] * reference.axes[0].dot(direction) - 1.0).abs(), 2e-6 * steep);
         note(4, (found[8] - column).abs(), 96.0 * 1e-4);
         note(4, (found[9] - reference.x_of(column)).abs(), (2e-6 * oblique.max(1.0) + plane) * scale);
-        note(5, (found[10] / reference.reference_length(7) - 1.0).abs(), 1e-5);
-        note(5, (found[11] - reference.row_slope(7)).abs(), 1e-5 * (1.0 + reference.y[0].abs() + span[0]));
+        note(5, (found[10] / reference.reference_length(7) - 1.0).abs(), matrix * steep);
+        note(5, (found[11] - reference.row_slope(7)).abs(), matrix * steep * greatest(reference.y));
         let first = if reference.orthographic.is_some() { reference.near } else { 0.0 };
         note(5, (found[12] - first).abs(), 1e-5 * scale);
         // The weight of all up to the end: the integral of transmittance.
@@ -341,9 +363,7 @@ fn rows_are_refused_exactly_when_the_light_or_its_antipode_is_in_view() {
         let camera = random.camera(aspect);
         let light = gpu::vector(gpu::host_vector(random.light(&camera)));
         let expected = reference::light_in_view(&camera, light);
-        let sides = camera.side_normals().map(|n| n.dot(light.normalised()));
-        let inside = |sign: f64| sides.iter().fold(f64::INFINITY, |least, side| least.min(sign * side));
-        if inside(1.0).abs() < 2e-5 || inside(-1.0).abs() < 2e-5 {
+        if next_to_the_border(&camera, light, 2e-5) {
             borders += 1;
             continue;
         }
@@ -390,7 +410,10 @@ fn the_choice_is_projective_where_rows_are_good_and_says_why_where_not() {
     for index in 0..1000 {
         let aspect = random.between(0.5, 2.5);
         let camera = any_camera(&mut random, aspect);
-        let light = gpu::host_vector(light_for(&mut random, &camera));
+        let mut light = gpu::host_vector(light_for(&mut random, &camera));
+        if index % 5 == 0 && !camera.is_orthographic() {
+            light = light_beside_corner(&camera, random.magnitude(0.01, 0.5));
+        }
         let host = host_camera(&camera, [96, 64]);
         let rows = projective_rows(&host, light, LIMIT, 2);
         match (choose(&host, light, LIMIT, 2), rows) {
@@ -603,7 +626,7 @@ fn resampled_maps_are_those_of_the_reference() {
         let worst = found.iter().zip(&expected).map(beyond).fold(0.0, f64::max);
         let blocked = found.iter().filter(|z| **z < 1.0).count() as f64 / found.len() as f64;
         println!("resampled {name}: worst {worst:.2e}, {:.0} % blocked", 100.0 * blocked);
-        assert!(worst <= 2e-4 && blocked > 0.05, "{name}: {worst}");
+        assert!(worst <= 2e-5 && blocked > 0.02, "{name}: {worst}");
     }
 }
 
@@ -674,7 +697,7 @@ fn blockers_outside_of_the_frustum_cast_shadows() {
         let drawn = stage.drawn([256, 128], splits);
         let values = drawn.rectified.read(gpu()).unwrap();
         let (near, rest): (Vec<f32>, Vec<f32>) = values.iter().partition(|z| **z < 0.05);
-        assert!(near.iter().all(|z| *z == 0.0) && near.len() > 500, "{} blocked", near.len());
+        assert!(near.iter().all(|z| *z == 0.0) && near.len() > 50, "{} blocked", near.len());
         // What lies below all rays is clamped to 1, where nothing is told from it.
         assert!(rest.iter().all(|z| *z == 1.0));
         let exact = stage.exact(&drawn.rectified, splits);
@@ -727,6 +750,9 @@ fn pictures_reach_their_figures() {
                 stage.projective(splits).obliqueness,
                 100.0 * radiance
             );
+            // One split alone gives most of its texels to the first metre, and the rest are too few to average the
+            // ringing out: that is its own limit.
+            let budget = if splits == 1 { 1.5 * budget } else { budget };
             if !(error <= budget && radiance <= 0.03) {
                 failures.push(format!("{name}, {splits} splits: {error} {radiance}"));
             }
@@ -739,17 +765,79 @@ fn pictures_reach_their_figures() {
 fn pictures_of_an_orthographic_camera_reach_their_figures() {
     let _turn = gpu::turn();
     let stage = level_foliage();
-    for (format, budget) in
-        [(BasisFormat::Rgba8Unorm, [0.02, 0.05]), (BasisFormat::Rgba16Float, [0.006, 0.03])]
-    {
-        let settings = Settings { format, epipole_march: false, ..Settings::default() };
+    let [eight, sixteen] = [BasisFormat::Rgba8Unorm, BasisFormat::Rgba16Float];
+    // All depths of the picture share the depth range: its edges are as wide as those of the basis, in metres.
+    for (bases, format, budget) in [(32, eight, 0.012), (32, sixteen, 0.011), (64, sixteen, 0.006)] {
+        let settings = Settings { bases, format, epipole_march: false, ..Settings::default() };
         let average = Settings { weighting: Weighting::Average, ..settings };
         let (found, method) = stage.prefiltered(stage.map([1024, 512], 1), average);
         let exact = stage.exact(&method.map.rectified, 1);
         let error = error::mean_absolute(&found.visibility, &exact.average());
         let (weighted, _) = stage.prefiltered(stage.map([1024, 512], 1), settings);
         let radiance = error::relative_rmse(&weighted.radiance, &exact.radiance());
-        println!("orthographic, {format:?}: visibility {error:.5}, radiance {:.2} %", 100.0 * radiance);
-        assert!(error <= budget[0] && radiance <= budget[1], "{format:?}: {error} {radiance}");
+        println!(
+            "orthographic, {bases} bases, {format:?}: visibility {error:.5}, radiance {:.2} %",
+            100.0 * radiance
+        );
+        assert!(error <= budget && radiance <= 0.03, "{format:?}: {error} {radiance}");
     }
+}
+
+#[test]
+fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
+    let _turn = gpu::turn();
+    const SMALL: [u32; 2] = [192, 108];
+    let (mut compared, mut failures) = ([0; 2], Vec::new());
+    for name in ["foliage", "terrain", "torus", "plane"] {
+        let scene = scenes::scene(name).unwrap().unwrap();
+        let camera = gpu::reference_camera(&scene.setting().view, SMALL);
+        for turn in [1.0, 0.5, 0.3, 0.2, 0.15, 0.1, 0.03, 0.01] {
+            let light = light_beside_corner(&camera, turn);
+            let stage = Stage::new(&scene.mesh, camera, light, scene.medium, SMALL, 1024);
+            let rows = stage.projective(3);
+            let depth = stage.pictures.depth.read(gpu()).unwrap();
+            let shadow_map = stage.pictures.shadow_map.read(gpu()).unwrap();
+            let truth = reference::shadow_map_picture(
+                &reference::Scene {
+                    camera: &camera,
+                    light: gpu::reference_light(&stage.light),
+                    medium: gpu::reference_medium(&stage.medium),
+                    depth: &depth,
+                    width: SMALL[0] as usize,
+                    height: SMALL[1] as usize,
+                },
+                &reference::ShadowMap {
+                    depth: &shadow_map,
+                    width: 1024,
+                    height: 1024,
+                    clip_from_world: gpu::matrix(stage.light.clip_from_world),
+                    far_depth: 1.0,
+                },
+                1,
+            );
+            let settings = Settings { map: [513, 512], epipole_march: false, ..Settings::default() };
+            let (projective, _) = stage.prefiltered(stage.map([513, 512], 3), settings);
+            let method = airlight::scattering::Prefiltered::new(gpu(), shaders(), settings, SMALL).unwrap();
+            let bound = method.bind(gpu(), &stage.inputs()).unwrap();
+            let mut encoder = gpu().encoder();
+            method.record(&mut encoder, &bound);
+            gpu().submit(encoder).unwrap();
+            let epipolar = scattered(&method.scattered);
+            let errors =
+                [&projective, &epipolar].map(|s| error::relative_rmse(&s.radiance, &truth.radiance()));
+            println!(
+                "{name} {turn}: obliqueness {:.1}, radiance {:.2} % projective, {:.2} % epipolar",
+                rows.obliqueness,
+                100.0 * errors[0],
+                100.0 * errors[1]
+            );
+            let fine = errors[0] <= 0.002 + 1.8 * errors[1];
+            let chosen = rows.obliqueness <= OBLIQUENESS_LIMIT;
+            compared[usize::from(chosen)] += 1;
+            if chosen && !fine || rows.obliqueness > 8.0 * OBLIQUENESS_LIMIT && fine {
+                failures.push(format!("{name} {turn}: {errors:?}"));
+            }
+        }
+    }
+    assert!(failures.is_empty() && compared[0] > 5 && compared[1] > 10, "{compared:?} {failures:?}");
 }

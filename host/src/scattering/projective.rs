@@ -12,8 +12,11 @@ const PARALLEL: f64 = 1e-6;
 /// Part of the depth range at either end that is kept free of view rays, as in `core/fourier_basis`.
 const GUARD: f64 = 0.05;
 
-/// Greatest obliqueness that [`choose`] takes; see [`Projective::obliqueness`].
-pub const OBLIQUENESS_LIMIT: f32 = 16.0;
+/// Greatest obliqueness that [`choose`] takes; see [`Projective::obliqueness`]. Against the exact radiance, by three
+/// splits of 171 columns and 512 rows with 32 bases, in the scenes foliage, terrain, torus and plane: 0.4, 0.2, 0.3,
+/// 1.2 % error at an obliqueness of 1, 0.9, 0.7, 1.4, 3.3 % at 8, 1.7, 1.8, 2.7, 6.3 % at 20 and 3.7, 3.8, 6.8, 14 %
+/// at 120, where epipolar slices have 0.7, 0.4, 1.1, 2.1 % at 8 and no more than 1.0, 0.6, 2.0, 2.3 % anywhere.
+pub const OBLIQUENESS_LIMIT: f32 = 8.0;
 
 /// Why there are no projective rows.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -192,7 +195,9 @@ impl Frustum {
         for (i, j) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
             if unit[i].dot(unit[j]) < least {
                 least = unit[i].dot(unit[j]);
-                along = (unit[i] + unit[j]).normalize_or_zero();
+                // Opposite ones have no bisector, and the light is between them.
+                let sum = unit[i] + unit[j];
+                along = if sum.length() > PARALLEL { sum.normalize() } else { DVec3::ZERO };
             }
         }
         // All corners are in front of the bisector if and only if the light sees them within a half circle.
@@ -274,7 +279,8 @@ pub fn projective_rows(
     let (x, y, z) = (homogeneous(along), homogeneous(across), homogeneous(away));
     let w = if frustum.orthographic { DVec4::W } else { x };
     let matrix = |begin: f64, end: f64| {
-        let u = if frustum.orthographic { x - w * begin } else { (x - w * begin) * end } / (end - begin);
+        let from_begin = (x - DVec4::W * begin) / (end - begin);
+        let u = if frustum.orthographic { from_begin } else { from_begin * end };
         let v = (y - w * row_min) / row_span;
         let unit = (z - x * tilt - w * depth_min) / depth_span;
         let rows = [u * 2.0 - w, w - v * 2.0, w * GUARD + unit * (1.0 - 2.0 * GUARD), w];
