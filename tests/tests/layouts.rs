@@ -84,7 +84,7 @@ impl Sentinel for Vec4 {
         Self::new(1.5, 2.5, 3.5, 4.5)
     }
     fn words() -> Vec<(u32, u32)> {
-        (0..4).map(|i| (4 * i, (i as f32 + 1.5).to_bits())).collect()
+        vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits()), (12, 4.5_f32.to_bits())]
     }
 }
 
@@ -152,6 +152,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: Frame {
         light: Vec3, azimuth_min: f32, axis_a: Vec3, rows_per_radian: f32,
         axis_b: Vec3, rows: f32, eye: Vec3, wraps: f32,
+        ray_light: Vec3, reserved_a: f32, ray_a: Vec3, reserved_b: f32, ray_b: Vec3, reserved_c: f32, ray_scale: Vec4,
     });
     twin!(twins: ProjectiveRows {
         origin: Vec3, near: f32, along: Vec3, tilt: f32, across: Vec3, row_min: f32, away: Vec3, row_span: f32,

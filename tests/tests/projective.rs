@@ -11,8 +11,8 @@ use airlight::core::{Camera, Light, MeshBuffers, Pictures, Sky, direction_from_a
 use airlight::data::{Mesh, plane};
 use airlight::scattering::{
     Along, BasisFormat, Choice, Inputs, March, Medium, OBLIQUENESS_LIMIT, Projective, ProjectiveError,
-    ProjectiveMap, ProjectivePrefiltered, ProjectiveRaster, ProjectiveRows, Settings, Weighting, choose,
-    projective_rows,
+    ProjectiveMap, ProjectivePrefiltered, ProjectiveRaster, ProjectiveRows, Settings, SettingsError, Start,
+    Weighting, choose, projective_rows,
 };
 use airlight::{Buffer, Texture, scenes};
 use airlight_tests::error;
@@ -21,6 +21,7 @@ use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicV
 use airlight_tests::reference::scattering as reference;
 use glam::{DVec4, Mat4, Vec2, Vec3};
 use gpu::{Probe, Random, gpu, shaders};
+use wgpu::TextureFormat::R32Float;
 
 const PICTURE: [u32; 2] = [480, 270];
 
@@ -232,7 +233,7 @@ fn shader_places_points_and_rays_as_the_reference_does() {
     let head = format!(
         "#import airlight::scattering::projective::{{
              ProjectiveRows, rectified_position, projective_ray, column_from_x, x_from_column, reference_reach,
-             row_slope, texel_begin, weight_until, filtered_column, light_ray_point
+             row_slope, texel_begin, stretch_weight, filtered_column, light_ray_point
          }}{UNFLATTEN}"
     );
     let probe = Probe {
@@ -251,8 +252,8 @@ fn shader_places_points_and_rays_as_the_reference_does() {
                output(10u, reference_reach(rows, 40.0, 7.0));
                output(11u, row_slope(rows, 40.0, 7.0));
                output(12u, texel_begin(rows, 96.0, 0u));
-               output(13u, weight_until(rows, 1.5, input(32u), ray.end));
-               output(14u, filtered_column(rows, 96.0, 1.5, input(32u), ray.end));
+               output(13u, stretch_weight(input(32u), max(ray.end - texel_begin(rows, 96.0, 0u), 0.0) * 1.5));
+               output(14u, filtered_column(rows, 96.0, 1.5, input(32u), 0u, ray.end));
                let on = light_ray_point(rows, 40.0, 7.0, x_from_column(rows, 96.0, input(31u)));
                output(15u, on.x); output(16u, on.y); output(17u, on.z);",
         inputs: 33,
@@ -500,6 +501,10 @@ impl Stage {
 
     /// The exact picture over the map that the GPU made.
     fn exact(&self, map: &Texture, splits: u32) -> reference::Picture {
+        self.exact_from(map, splits, reference::Start::Eye)
+    }
+
+    fn exact_from(&self, map: &Texture, splits: u32, start: reference::Start) -> reference::Picture {
         let depth = self.pictures.depth.read(gpu()).unwrap();
         let [width, height, _] = self.pictures.depth.size();
         let scene = reference::Scene {
@@ -512,7 +517,7 @@ impl Stage {
         };
         let [columns, rows, _] = map.size();
         let rows = self.reference_rows([columns, rows], splits);
-        reference::projective_picture(&scene, &rows, &map.read(gpu()).unwrap(), reference::Start::Eye, 1)
+        reference::projective_picture(&scene, &rows, &map.read(gpu()).unwrap(), start, 1)
     }
 
     fn map(&self, map: [u32; 2], splits: u32) -> ProjectiveMap {
@@ -539,6 +544,8 @@ impl Stage {
 
     fn prefiltered(&self, map: ProjectiveMap, settings: Settings) -> (Scattered, ProjectivePrefiltered) {
         let [width, height, _] = self.pictures.depth.size();
+        let level = self.reference.is_orthographic();
+        let settings = Settings { start: if level { Start::NearPlane } else { settings.start }, ..settings };
         let method = ProjectivePrefiltered::new(gpu(), shaders(), map, settings, [width, height]).unwrap();
         let bound = method.bind(gpu(), &self.inputs()).unwrap();
         let mut encoder = gpu().encoder();
@@ -840,4 +847,230 @@ fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
         }
     }
     assert!(failures.is_empty() && compared[0] > 5 && compared[1] > 10, "{compared:?} {failures:?}");
+}
+
+#[test]
+fn regions_and_near_planes_are_exact_too() {
+    let _turn = gpu::turn();
+    let mut stage = gallery("terrain");
+    // A near plane that matters, in air that is thick enough to tell.
+    let scene = scenes::scene("terrain").unwrap().unwrap();
+    let mut view = scene.setting().view;
+    view.near = 6.0;
+    let air = Medium { extinction: 0.06, ..scene.medium };
+    for near in [false, true] {
+        if near {
+            stage = Stage::new(
+                &scene.mesh,
+                gpu::reference_camera(&view, PICTURE),
+                scene.light,
+                air,
+                PICTURE,
+                1024,
+            );
+        }
+        let start = if near { reference::Start::NearPlane } else { reference::Start::Eye };
+        for regions in [1, 3, 8] {
+            let settings = Settings {
+                regions,
+                format: BasisFormat::Rgba16Float,
+                start: if near { Start::NearPlane } else { Start::Eye },
+                epipole_march: false,
+                ..Settings::default()
+            };
+            let (found, method) = stage.prefiltered(stage.map([510, 512], 3), settings);
+            let exact = stage.exact_from(&method.map.rectified, 3, start);
+            let error = error::relative_rmse(&found.radiance, &exact.radiance());
+            println!(
+                "terrain, {regions} regions, from the near plane {near}: radiance {:.2} %",
+                100.0 * error
+            );
+            assert!(error <= 0.02, "{regions} {near}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_row_lit_up_to_a_column_has_its_closed_form() {
+    let _turn = gpu::turn();
+    // A narrow view, so that all rays of a row are nearly as long as its reference ray.
+    let view = airlight::core::PerspectiveView {
+        eye: Vec3::new(1.0, 2.0, -3.0),
+        target: Vec3::new(2.0, 2.2, -9.0),
+        field_of_view: 12.0,
+        near: 0.1,
+        far: 100.0,
+        depth: airlight::core::DepthRange::Reversed,
+    };
+    const SIZE: [u32; 2] = [512, 16];
+    let mesh = plane(Vec2::splat(9.0), 1);
+    for (splits, lit, extinction) in
+        [(1, 200, 0.02), (2, 300, 0.05), (3, 340, 0.01), (4, 400, 0.1), (4, 256, 0.0)]
+    {
+        let medium = Medium::new(extinction, Vec3::ONE, 0.0, 200.0).unwrap();
+        let camera = gpu::reference_camera(&view, PICTURE);
+        let light = Vec3::new(0.2, 1.0, 0.1).normalize();
+        let mut stage = Stage::new(&mesh, camera, light, medium, PICTURE, 64);
+        let mut random = Random(9);
+        let depths: Vec<f32> =
+            (0..PICTURE[0] * PICTURE[1]).map(|_| random.magnitude(1e-3, 1e-1) as f32).collect();
+        stage.pictures.depth = gpu::texture(PICTURE, R32Float, &depths);
+        let row: Vec<f32> = (0..SIZE[0]).map(|column| if column < lit { 1.0 } else { 0.0 }).collect();
+        let rows = stage.reference_rows(SIZE, splits);
+        let edge = rows.x_of(f64::from(lit));
+        let mut worst = [0.0_f64; 2];
+        for weighting in [Weighting::Average, Weighting::Transmittance] {
+            let map = stage.map(SIZE, splits);
+            map.rectified.write(gpu(), &row.repeat(SIZE[1] as usize)).unwrap();
+            let marched = stage.marched(&map, weighting);
+            let settings =
+                Settings { weighting, window: false, bases: 64, epipole_march: false, ..Settings::default() };
+            let method = ProjectivePrefiltered::new(gpu(), shaders(), map, settings, PICTURE).unwrap();
+            let bound = method.bind(gpu(), &stage.inputs()).unwrap();
+            let mut encoder = gpu().encoder();
+            method.record_filter(&mut encoder, &bound);
+            method.record_evaluation(&mut encoder, &bound);
+            gpu().submit(encoder).unwrap();
+            let found = scattered(&method.scattered);
+            let sigma = if weighting == Weighting::Average { 0.0 } else { f64::from(extinction) };
+            let weight = |t: f64| if sigma == 0.0 { t } else { -(-sigma * t).exp_m1() / sigma };
+            for (i, depth) in depths.iter().enumerate() {
+                let (x, y) = (i % PICTURE[0] as usize, i / PICTURE[0] as usize);
+                let ndc = ReferenceCamera::pixel_ndc(x, y, PICTURE[0] as usize, PICTURE[1] as usize);
+                let distance = stage.reference.distance(ndc, f64::from(*depth));
+                let cosine = rows.axes[0].dot(stage.reference.ray(ndc));
+                let expected = weight(distance.min(edge / cosine)) / weight(distance);
+                worst[0] = worst[0].max((f64::from(marched.visibility[i]) - expected).abs());
+                worst[1] = worst[1].max((f64::from(found.visibility[i]) - expected).abs());
+            }
+        }
+        println!(
+            "{splits} splits, lit up to {edge:.2} m, extinction {extinction}: march {:.1e}, bases {:.1e}",
+            worst[0], worst[1]
+        );
+        // f16 of the picture and f32 of the sums; 8 bits and 64 bases at the ends of the depth range.
+        assert!(worst[0] < 1.5e-3 && worst[1] < 0.03, "{splits}: {worst:?}");
+    }
+}
+
+#[test]
+fn an_orthographic_camera_is_refused_where_rays_begin_at_the_eye() {
+    let _turn = gpu::turn();
+    let level = orthographic(&mut Random(5), 1.5);
+    let light = gpu::host_vector(level.right + level.forward * 0.2);
+    let rows = projective_rows(&host_camera(&level, [96, 64]), light, LIMIT, 1).unwrap();
+    for (start, expected) in [(Start::Eye, Err(SettingsError::OrthographicStart)), (Start::NearPlane, Ok(()))]
+    {
+        let map = ProjectiveMap::resampled(gpu(), shaders(), [16, 8]).unwrap();
+        let settings = Settings { start, ..Settings::default() };
+        let method = ProjectivePrefiltered::new(gpu(), shaders(), map, settings, [16, 8]).unwrap();
+        assert_eq!(method.write(gpu(), &rows), expected);
+    }
+}
+
+#[test]
+fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
+    let _turn = gpu::turn();
+    const SMALL: [u32; 2] = [16, 8];
+    let mut random = Random(77);
+    let depth = gpu::texture(SMALL, R32Float, &[1.0; 128]);
+    let shadow_map = gpu::texture([8, 8], R32Float, &[1.0; 64]);
+    let first = host_camera(&random.camera(2.0), SMALL);
+    let matrix = gpu::light_matrix(linear::Vec3::new(0.0, 1.0, 0.0), linear::Vec3::default(), 10.0, 1.0);
+    let camera = Buffer::uniform(gpu(), &first);
+    let light =
+        Buffer::uniform(gpu(), &gpu::host_light(linear::Vec3::new(0.0, 1.0, 0.0), matrix, 1.0, Vec3::ONE));
+    let medium = Buffer::uniform(gpu(), &Medium::new(0.1, Vec3::ONE, 0.0, 10.0).unwrap());
+    let inputs =
+        Inputs { camera: &camera, light: &light, medium: &medium, depth: &depth, shadow_map: &shadow_map };
+    let base = Settings {
+        bases: 8,
+        format: BasisFormat::Rgba16Float,
+        start: Start::NearPlane,
+        ..Settings::default()
+    };
+    let plain =
+        Settings { window: false, epipole_march: false, regions: 3, weighting: Weighting::Average, ..base };
+    let methods = [base, plain].map(|settings| {
+        let map = ProjectiveMap::resampled(gpu(), shaders(), SMALL).unwrap();
+        ProjectivePrefiltered::new(gpu(), shaders(), map, settings, SMALL).unwrap()
+    });
+    let bound = [0, 1].map(|i| methods[i].bind(gpu(), &inputs).unwrap());
+    let along = Along::Projective(&methods[0].map);
+    let march = March::new(gpu(), shaders(), &along, Weighting::Transmittance, SMALL).unwrap();
+    let march_bound = march.bind(gpu(), &inputs, &along).unwrap();
+    let (mut done, mut sum) = (0, 0.0);
+    while done < 600 {
+        let near = random.magnitude(1e-3, 1.0);
+        let eye = random.direction() * random.between(0.0, if random.unit() < 0.1 { 1e4 } else { 30.0 });
+        let seen = if random.unit() < 0.3 {
+            orthographic(&mut random, 2.0)
+        } else {
+            ReferenceCamera::perspective(&airlight_tests::reference::camera::View {
+                eye: gpu::vector(gpu::host_vector(eye)),
+                target: eye + random.direction(),
+                up: random.direction(),
+                fov_y: if random.unit() < 0.1 {
+                    random.magnitude(0.002, 0.2)
+                } else {
+                    random.between(0.2, 2.9)
+                },
+                aspect: 2.0,
+                near,
+                far: if random.unit() < 0.3 { f64::INFINITY } else { near * random.magnitude(1.1, 1e5) },
+                reversed: random.unit() < 0.5,
+            })
+        };
+        let host = host_camera(&seen, SMALL);
+        let towards = light_for(&mut random, &seen);
+        let far_depth = if random.unit() < 0.5 { 1.0 } else { 0.0 };
+        let air = Medium::new(
+            if random.unit() < 0.15 { 0.0 } else { random.magnitude(1e-6, 1e6) as f32 },
+            Vec3::new(1.0, random.unit() as f32, 0.0),
+            random.between(-0.999, 0.999) as f32,
+            random.magnitude(1e-3, 1e7) as f32,
+        )
+        .unwrap();
+        let splits = random.below(4) as u32 + 1;
+        let Ok(rows) = projective_rows(&host, gpu::host_vector(towards), air.distance_limit, splits) else {
+            continue;
+        };
+        let matrix = gpu::light_matrix(towards, seen.eye, random.magnitude(0.1, 1e3), far_depth);
+        camera.write(gpu(), &host);
+        light.write(gpu(), &gpu::host_light(towards, matrix, far_depth, Vec3::new(1e4, 1.0, 0.0)));
+        medium.write(gpu(), &air);
+        let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 3.0, 1e30, 0.0, 1.0];
+        let mut depths = |count: usize| -> Vec<f32> {
+            let share = random.unit();
+            (0..count)
+                .map(|_| if random.unit() < share { wild[random.below(8)] } else { random.unit() as f32 })
+                .collect()
+        };
+        depth.write(gpu(), &depths(128)).unwrap();
+        shadow_map.write(gpu(), &depths(64)).unwrap();
+        let method = &methods[done % 2];
+        method.write(gpu(), &rows).unwrap();
+        methods[0].map.write(gpu(), &rows);
+        let mut encoder = gpu().encoder();
+        method.record(&mut encoder, &bound[done % 2]);
+        march.record(&mut encoder, &march_bound);
+        gpu().submit(encoder).unwrap();
+        let name = || format!("case {done}: {host:?} {rows:?} {air:?}");
+        let map = method.map.rectified.read(gpu()).unwrap();
+        assert!(map.iter().all(|z| (0.0..=1.0).contains(z)), "{}", name());
+        let bases = method.bases.read(gpu()).unwrap();
+        assert!(bases.iter().all(|b| (-0.01..=1.01).contains(b)), "{}", name());
+        for texture in [&method.scattered, &march.scattered] {
+            for texel in texture.read(gpu()).unwrap().chunks_exact(4) {
+                let fine = texel.iter().all(|v| v.is_finite() && *v >= 0.0) && texel[3] <= 1.0;
+                assert!(fine, "{texel:?}; {}", name());
+                assert!(air.extinction > 0.0 || texel[..3] == [0.0; 3], "{texel:?}; {}", name());
+                sum += f64::from(texel[3]);
+            }
+        }
+        done += 1;
+    }
+    let mean = sum / (600.0 * 256.0);
+    println!("mean visibility {mean:.3}");
+    assert!((0.2..0.95).contains(&mean), "the random cases are not varied enough: {mean}");
 }

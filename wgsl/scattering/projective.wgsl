@@ -13,7 +13,7 @@
 // note: share the columns.
 
 #import airlight::core::fourier_basis::{GUARD, guarded}
-#import airlight::scattering::single_scatter::one_minus_exp
+#import airlight::core::prefix_sum::one_minus_exp
 
 /// Perspective camera: rows and depth are slopes.
 const PERSPECTIVE: u32 = 0u;
@@ -190,25 +190,25 @@ fn stretch_weight(extinction: f32, metres: f32) -> f32 {
     return select(one_minus_exp(depth) / max(extinction, 1e-30), metres * (1.0 - 0.5 * depth), depth < 1e-4);
 }
 
-/// Weight of everything on the reference ray from the left end of the map (in perspective the eye) to `x` metres of X.
-/// `reach`: of the reference ray; `extinction` in 1/m, 0 for plain means.
-fn weight_until(rows: ProjectiveRows, reach: f32, extinction: f32, x: f32) -> f32 {
-    let start = select(rows.near, 0.0, rows.projection == PERSPECTIVE);
-    return stretch_weight(extinction, max(x - start, 0.0) * reach);
-}
-
 /// Column between whose neighbours filtered bases are interpolated linearly for a ray that ends at `x` metres of X.
-/// Texel i holds the mean up to its right edge; between two edges the weighted sum grows with the weight and not with
-/// the column, so that the share of the next texel is not the fraction of the column. 0.5 .. `width` - 0.5.
-fn filtered_column(rows: ProjectiveRows, width: f32, reach: f32, extinction: f32, x: f32) -> f32 {
-    let column = min(u32(column_from_x(rows, width, x)), u32(width) - 1u);
-    let first = weight_until(rows, reach, extinction, texel_begin(rows, width, column));
-    let last = weight_until(rows, reach, extinction, texel_end(rows, width, column));
-    let here = clamp(weight_until(rows, reach, extinction, x), first, last);
-    let texel = last - first;
-    // Beyond the reach of light all weights are used up and all means are alike.
-    let share = select((here - first) * last / max(texel * here, 1e-37), 1.0, texel <= 1e-6 * last);
-    return clamp(f32(column) - 0.5 + clamp(share, 0.0, 1.0), 0.5, width - 0.5);
+/// Texel i holds the mean from the left edge of texel `first`, where its region begins, up to the right edge of texel i;
+/// between two edges the weighted sum grows with the weight and not with the column, so that the share of the next
+/// texel is not the fraction of the column. `reach`: of the reference ray; `extinction` in 1/m, 0 for plain means.
+/// The result is at least `first` + 0.5.
+fn filtered_column(
+    rows: ProjectiveRows, width: f32, reach: f32, extinction: f32, first: u32, x: f32
+) -> f32 {
+    let start = texel_begin(rows, width, first);
+    // At the very end of a region the column is that of the next.
+    let last = max(u32(max(ceil(column_from_x(rows, width, x)) - 1.0, 0.0)), first);
+    let column = min(last, u32(width) - 1u);
+    let before = stretch_weight(extinction, max(texel_begin(rows, width, column) - start, 0.0) * reach);
+    let after = stretch_weight(extinction, max(texel_end(rows, width, column) - start, 0.0) * reach);
+    let here = clamp(stretch_weight(extinction, max(x - start, 0.0) * reach), before, after);
+    let texel = after - before;
+    // Where transmittance is used up all means are alike.
+    let share = select((here - before) * after / max(texel * here, 1e-37), 1.0, texel <= 1e-6 * after);
+    return clamp(f32(column) - 0.5 + clamp(share, 0.0, 1.0), f32(first) + 0.5, width - 0.5);
 }
 
 /// Mean visibility of a view ray over `row` of a rectified map, weighted by transmittance: the exact sum over its

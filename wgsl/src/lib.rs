@@ -89,9 +89,10 @@ modules! {
     core::phase [],
     core::prefix_sum [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
-    scattering::single_scatter ["core::phase"],
-    scattering::projective ["core::fourier_basis", "scattering::single_scatter"],
-    scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
+    scattering::rows [],
+    scattering::projective ["core::fourier_basis", "core::prefix_sum"],
+    scattering::single_scatter ["core::phase", "core::prefix_sum"],
+    scattering::march ["core::finite", "core::light", "core::prefix_sum"],
 }
 
 passes! {

@@ -26,7 +26,8 @@ pub use projective_map::{ProjectiveMap, ProjectiveRaster, ProjectiveRasterBound}
 pub use projective_prefiltered::{ProjectivePrefiltered, ProjectivePrefilteredBound};
 pub use rectification::{Frame, Rectification};
 pub use settings::{
-    BasisFormat, ScatteringError, Settings, SettingsError, Weighting, check_size, epipole_near_picture,
+    BasisFormat, Filtering, Reference, ScatteringError, Settings, SettingsError, Start, Weighting,
+    check_size, epipole_near_picture,
 };
 
 use crate::gpu::Gpu;

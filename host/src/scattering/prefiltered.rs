@@ -49,7 +49,7 @@ impl Prefiltered {
         let evaluate = settings.evaluate_definitions();
         Ok(Self {
             settings,
-            rectification: Rectification::new(gpu, shaders, settings.map)?,
+            rectification: Rectification::from_settings(gpu, shaders, &settings)?,
             filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
             evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate", &evaluate, "fragment_evaluate")?,
             sampler: Sampler::rows(gpu),
@@ -96,9 +96,9 @@ impl Prefiltered {
 
     /// Records the filter of the bases (thesis 4.3.3, Listings 4.1 to 4.3).
     pub fn record_filter(&self, encoder: &mut wgpu::CommandEncoder, bound: &PrefilteredBound) {
-        let Settings { bases, bases_per_thread, map, .. } = self.settings;
+        let Settings { bases, bases_per_thread, map, regions, .. } = self.settings;
         let chunks = bases.div_ceil(bases_per_thread.min(bases));
-        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, 1]);
+        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, regions]);
     }
 
     /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).

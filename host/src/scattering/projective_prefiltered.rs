@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light shafts by prefiltered bases over a projectively rectified map (thesis 4.3 and 4.4.2).
 
-use super::{Inputs, ProjectiveMap, ScatteringError, Settings, check_size, picture_pass};
+use super::{
+    Inputs, Projective, ProjectiveMap, ScatteringError, Settings, SettingsError, Start, check_size,
+    picture_pass,
+};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Sampler, Texture};
@@ -11,7 +14,8 @@ use wgpu::TextureFormat;
 /// Light shafts by prefiltered bases over a projective map.
 pub struct ProjectivePrefiltered {
     settings: Settings,
-    /// The map that is filtered. Its rows are written, and a map that is drawn is drawn, before [`Self::record`].
+    /// The map that is filtered; [`Self::write`] takes its rows. A map that is drawn is drawn before
+    /// [`Self::record`].
     pub map: ProjectiveMap,
     filter_pass: Pass,
     evaluate_pass: Pass,
@@ -65,6 +69,18 @@ impl ProjectivePrefiltered {
         })
     }
 
+    /// Takes the rows of a frame.
+    ///
+    /// # Errors
+    /// [`SettingsError::OrthographicStart`] for an orthographic camera where rays are to begin at the eye.
+    pub fn write(&self, gpu: &Gpu, projective: &Projective) -> Result<(), SettingsError> {
+        if projective.rows.projection != 0 && self.settings.start == Start::Eye {
+            return Err(SettingsError::OrthographicStart);
+        }
+        self.map.write(gpu, projective);
+        Ok(())
+    }
+
     /// Binds the inputs.
     ///
     /// # Errors
@@ -97,9 +113,9 @@ impl ProjectivePrefiltered {
 
     /// Records the filter of the bases (thesis 4.3.3, Listings 4.1 to 4.3).
     pub fn record_filter(&self, encoder: &mut wgpu::CommandEncoder, bound: &ProjectivePrefilteredBound) {
-        let Settings { bases, bases_per_thread, map, .. } = self.settings;
+        let Settings { bases, bases_per_thread, map, regions, .. } = self.settings;
         let chunks = bases.div_ceil(bases_per_thread.min(bases));
-        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, 1]);
+        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, regions]);
     }
 
     /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).

@@ -5,13 +5,15 @@
 // note: Around the light's place in the picture (and its antipode's) rays cover only a few texels and the light
 // note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
 // note: texels, very short rays included, blended in without a seam.
-// note: A ray of an orthographic camera begins inside its projective row: what lies before is subtracted, which amplifies
-// note: the rounding of the bases where it outweighs the ray. Store them as rgba16float there.
 // definition BASES: number M of bases, as in the filter.
-// definition PROJECTIVE: projective rows instead of epipolar slices.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
 // definition AVERAGE: the bases are plain means, and so is that march.
+// definition NEAREST: the nearest texel of the bases instead of a bilinear blend; no sampler.
+// definition REGIONS: regions that the rows were filtered in, as in the filter; more than one costs more reads a pixel.
+// definition NEAR_PLANE: rays, and the medium, begin at the near plane instead of the eye.
+// definition DEPTH_WARP: as in rectify.
+// definition PROJECTIVE: projective rows instead of epipolar slices. An orthographic camera needs NEAR_PLANE as well.
 // binding camera: the camera, perspective; with PROJECTIVE any.
 // binding light: the directional light and its shadow map's clip space.
 // binding medium: the medium.
@@ -21,24 +23,25 @@
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
 // binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH.
 // binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
-// binding bases_sampler: linear; clamp to edge in u, repeat in v.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-#import airlight::core::camera::{
-    Camera, view_ray, perspective_ray, ndc_from_pixel, distance_from_depth, perspective_distance
-}
+#import airlight::core::camera::{Camera, view_ray, perspective_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{
     series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored
 }
 #import airlight::core::light::Light
+#import airlight::core::prefix_sum::prefix_weight
 #import airlight::scattering::march::march_shadow_map
 #import airlight::scattering::projective::{
-    ProjectiveRows, PERSPECTIVE, projective_ray, reference_reach, column_from_x, filtered_column, weight_until
+    ProjectiveRows, ProjectiveRay, projective_ray, reference_reach, column_from_x, x_from_column, texel_begin,
+    filtered_column, stretch_weight
 }
 #import airlight::scattering::rectify::{
-    Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray
+    Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
 }
+#import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin, prefix_column}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -55,25 +58,47 @@
 @group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
 #endif
 @group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
+#ifndef NEAREST
 @group(#{GROUP}) @binding(8) var bases_sampler: sampler;
+#endif
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
 
 const LAYERS: u32 = u32(#{BASES}) / 4u;
+#ifdef REGIONS
+const ROW_REGIONS: u32 = u32(#{REGIONS});
+#else
+const ROW_REGIONS: u32 = 1u;
+#endif
 
 /// Rays that cover fewer texels are marched.
 const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
-/// Mean visibility by the filtered bases at `at`, in texture coordinates, for a ray of this depth; not clamped.
-fn filtered_visibility(at: vec2<f32>, depth_of_ray: f32) -> f32 {
-    var series = series_first(depth_of_ray);
+/// The filtered series of a ray, read at `column` of its row, in texels.
+fn filtered_series(ray: RowRay, column: f32) -> f32 {
+    let size = vec2<f32>(textureDimensions(bases).xy);
+#ifdef NEAREST
+#ifdef PROJECTIVE
+    let row = floor(ray.row + 0.5);
+#else
+    let row = f32(nearest_row(frame, ray.row));
+#endif
+    let place = vec2<u32>(clamp(vec2<f32>(column, row), vec2<f32>(0.0), size - 1.0));
+#else
+    let place = vec2<f32>(column, ray.row + 0.5) / size;
+#endif
+    var series = series_first(ray.depth);
 #ifdef LANCZOS
     var window = series_first(1.0 / f32(4u * LAYERS));
 #endif
     var visibility = 0.5;
     for (var layer = 0u; layer < LAYERS; layer++) {
-        let filtered = basis_from_stored(textureSampleLevel(bases, bases_sampler, at, layer, 0.0));
+#ifdef NEAREST
+        let filtered = basis_from_stored(textureLoad(bases, place, layer, 0));
+#else
+        let filtered = basis_from_stored(textureSampleLevel(bases, bases_sampler, place, layer, 0.0));
+#endif
 #ifdef LANCZOS
         visibility += dot(coefficients_lanczos(series, window, layer, 4u * LAYERS), filtered);
         window = series_next(window);
@@ -85,59 +110,152 @@ fn filtered_visibility(at: vec2<f32>, depth_of_ray: f32) -> f32 {
     return visibility;
 }
 
+#ifdef PROJECTIVE
+/// Mean visibility of a view ray between its ends. `row_ray`: the same in columns; `extinction` in 1/m, 0 for plain means.
+fn projective_visibility(along: ProjectiveRay, row_ray: RowRay, extinction: f32) -> f32 {
+    let size = textureDimensions(bases);
+    let width = f32(size.x);
+    let reach = reference_reach(rows, f32(size.y), row_ray.row);
+    let first = region_of(row_ray.begin, size.x, ROW_REGIONS);
+    let last = max(region_of(row_ray.end, size.x, ROW_REGIONS), first);
+    var sum = 0.0;
+    var total = 0.0;
+    for (var region = first; region <= last; region++) {
+        let column = region_begin(region, size.x, ROW_REGIONS);
+        let start = texel_begin(rows, width, column);
+        let from_x = max(along.begin, start);
+        var to_x = max(along.end, from_x);
+        if region < last {
+            to_x = max(texel_begin(rows, width, region_begin(region + 1u, size.x, ROW_REGIONS)), from_x);
+        }
+        var mean = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, to_x));
+#ifdef NEAR_PLANE
+        if from_x > start {
+            let whole = stretch_weight(extinction, (to_x - start) * reach);
+            let before = stretch_weight(extinction, (from_x - start) * reach);
+            let skipped = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, from_x));
+            mean = clamp((mean * whole - skipped * before) / max(whole - before, 1e-6 * whole + 1e-30), 0.0, 1.0);
+        }
+#endif
+        let begins = (from_x - along.begin) * along.reach;
+        let weight = exp(-extinction * begins) * stretch_weight(extinction, (to_x - from_x) * along.reach);
+        sum += mean * weight;
+        total += weight;
+    }
+    // A ray of no length has no mean and scatters nothing.
+    return select(0.0, sum / max(total, 1e-37), total > 1e-30);
+}
+#else
+/// Mean visibility of a ray over its stretch of the row. `reference_step`: optical depth of a texel by which the bases
+/// are weighted; `optical_step`: that of the ray itself, by which regions are put together.
+fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
+    let width = textureDimensions(bases).x;
+    let first = region_of(ray.begin, width, ROW_REGIONS);
+    let last = region_of(ray.end, width, ROW_REGIONS);
+    var sum = 0.0;
+    var total = 0.0;
+    for (var region = first; region <= last; region++) {
+        let start = f32(region_begin(region, width, ROW_REGIONS));
+        let from_texel = max(ray.begin, start);
+        let to_texel = min(ray.end, f32(region_begin(region + 1u, width, ROW_REGIONS)));
+        var mean = filtered_series(ray, prefix_column(to_texel, start));
+#ifdef NEAR_PLANE
+        if from_texel > start {
+            let whole = prefix_weight(reference_step, to_texel - start);
+            let before = prefix_weight(reference_step, from_texel - start);
+            let part = mean * whole - filtered_series(ray, prefix_column(from_texel, start)) * before;
+            mean = clamp(part / max(whole - before, 1e-6 * whole), 0.0, 1.0);
+        }
+#endif
+        // In units of the stretch's first texel: finite however deep the stretch lies.
+        let weight = exp(-optical_step * (from_texel - ray.begin)) * prefix_weight(optical_step, to_texel - from_texel);
+        sum += mean * weight;
+        total += weight;
+    }
+    return select(0.0, sum / total, total > 0.0);
+}
+#endif
+
 /// Radiance, and mean visibility in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
-    let size = vec2<f32>(textureDimensions(bases).xy);
 #ifdef AVERAGE
     let extinction = 0.0;
 #else
     let extinction = medium.extinction;
 #endif
+    let width = f32(textureDimensions(bases).x);
 #ifdef PROJECTIVE
     let ray = view_ray(camera, ndc);
     let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
-    let along = projective_ray(rows, size.y, ray.origin, ray.direction, distance);
-    let texels = column_from_x(rows, size.x, along.end) - column_from_x(rows, size.x, along.begin);
-    let reach = reference_reach(rows, size.y, along.row);
-    let row_coordinate = (along.row + 0.5) / size.y;
-    let end = filtered_column(rows, size.x, reach, extinction, along.end) / size.x;
-    var visibility = filtered_visibility(vec2<f32>(end, row_coordinate), along.depth);
-    if rows.projection != PERSPECTIVE {
-        let begin = filtered_column(rows, size.x, reach, extinction, along.begin) / size.x;
-        let before = filtered_visibility(vec2<f32>(begin, row_coordinate), along.depth);
-        let weight_before = weight_until(rows, reach, extinction, along.begin);
-        let weight = weight_until(rows, reach, extinction, along.end);
-        let left = max(weight - weight_before, 1e-5 * weight);
-        visibility = clamp(visibility, 0.0, 1.0);
-        visibility += (visibility - clamp(before, 0.0, 1.0)) * weight_before / max(left, 1e-30);
-    }
+    let cosine = dot(ray.direction, light.direction);
+    var along = projective_ray(rows, f32(textureDimensions(bases).y), ray.origin, ray.direction, distance);
+#ifdef NEAR_PLANE
+    // An orthographic ray begins there anyway.
+    let near = distance_from_depth(camera, ray, ndc, camera.near_depth, distance);
+    along.begin += near / along.reach;
 #else
-    let ray = perspective_ray(camera, ndc);
-    let distance = perspective_distance(camera, ndc, surface, medium.distance_limit);
-
-    let epipolar = epipolar_ray(frame, ray.direction);
+    let near = 0.0;
+#endif
+    var row_ray = RowRay(
+        along.row, column_from_x(rows, width, along.begin), column_from_x(rows, width, along.end), along.depth
+    );
+#ifdef NEAR_PLANE
+    // Short stretches are widened towards the eye, as those of slices are.
+    let widened = stretch_begin(row_ray.begin, row_ray.end);
+    if widened < row_ray.begin {
+        row_ray.begin = widened;
+        along.begin = min(along.begin, x_from_column(rows, width, widened));
+    }
+#endif
+    let texels = row_ray.end - row_ray.begin;
+    var visibility = projective_visibility(along, row_ray, extinction);
+#else
+    let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
+    let distance = ray.distance;
+    let cosine = ray.cosine;
     // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
-    let row = nearest_row(frame, epipolar.row);
-    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
-    let texels = clamp(size.x * distance * epipolar.sine / slice.radius_max, 0.0, size.x);
-    let at = vec2<f32>(max(texels - 0.5, 0.5), epipolar.row + 0.5) / size;
-    var visibility = filtered_visibility(at, depth_from_ray(slice, epipolar));
+    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
+    let texels = clamp(width * ray.distance * ray.sine / slice.radius_max, 0.0, width);
+    var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(slice, ray));
+#ifdef DEPTH_WARP
+    row_ray.depth = warped_depth(row_ray.depth);
+#endif
+#ifdef NEAR_PLANE
+    let near = epipolar_ray(frame, ndc, camera.near_depth, distance).distance;
+    row_ray.begin = stretch_begin(width * near * ray.sine / slice.radius_max, texels);
+#else
+    let near = 0.0;
+#endif
+    // Optical depth of a texel of a ray at right angles to the light.
+    let across = extinction * slice.radius_max / width;
+#ifdef REGIONS
+    var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
+#else ifdef NEAR_PLANE
+    var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
+#else
+    var visibility = filtered_series(row_ray, prefix_column(texels, 0.0));
+#endif
 #endif
     visibility = clamp(visibility, 0.0, 1.0);
 
 #ifdef EPIPOLE_MARCH
     let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
     let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
+#ifdef PROJECTIVE
+    let march_ray = ray;
+#else
+    let march_ray = perspective_ray(camera, ndc);
+#endif
+    let march_from = march_ray.origin + near * march_ray.direction;
     let marched = march_shadow_map(
-        shadow_map, light, ray.origin, ray.direction, distance, extinction, steps, 0.5
+        shadow_map, light, march_from, march_ray.direction, distance - near, extinction, steps, 0.5
     );
     visibility = mix(visibility, marched, near_epipole);
 #endif
 
-    let cosine = dot(ray.direction, light.direction);
-    let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
+    let radiance = in_scattered(medium, light.radiance, cosine, distance - near, visibility);
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
 }
 

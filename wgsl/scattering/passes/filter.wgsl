@@ -7,6 +7,8 @@
 // note: Depths outside 0..1 are clamped, non-finite ones count as unblocked.
 // definition BASES: number M of bases, a multiple of 4 from 4 to 128.
 // definition BASES_PER_THREAD: bases a thread filters, a multiple of 4.
+// definition REGIONS: regions of equal width that a row is filtered in, each by itself and by a thread of its own.
+// definition DIRECT: sines and cosines of every basis instead of the recurrence by rotation.
 // definition PROJECTIVE: projective rows, whose texels differ in length, instead of epipolar slices.
 // definition AVERAGE: plain means (average visibility) instead of means weighted by transmittance.
 // definition RGBA16FLOAT: store as rgba16float instead of rgba8unorm.
@@ -18,13 +20,12 @@
 
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis, surface_bias}
-#import airlight::core::prefix_sum::{row_weights, row_weights_next, running_mean}
-#ifdef PROJECTIVE
-#import airlight::core::prefix_sum::RowWeights
-#import airlight::scattering::projective::{ProjectiveRows, reference_reach, texel_begin, texel_end, stretch_weight}
-#else
+#import airlight::core::prefix_sum::{RowWeights, row_weights, row_weights_next, running_mean}
+#import airlight::scattering::projective::{
+    ProjectiveRows, reference_reach, texel_begin, texel_end, stretch_weight
+}
 #import airlight::scattering::rectify::slice_from_texel
-#endif
+#import airlight::scattering::rows::region_begin
 #import airlight::scattering::single_scatter::Medium
 
 #ifndef AVERAGE
@@ -44,6 +45,11 @@
 #endif
 
 const LAYERS: u32 = u32(#{BASES}) / 4u;
+#ifdef REGIONS
+const ROW_REGIONS: u32 = u32(#{REGIONS});
+#else
+const ROW_REGIONS: u32 = 1u;
+#endif
 const PER_THREAD: u32 = u32(#{BASES_PER_THREAD}) / 4u;
 
 @compute @workgroup_size(32)
@@ -51,9 +57,10 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = textureDimensions(rectified);
     let row = id.x;
     let first = id.y * PER_THREAD;
-    if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS {
+    if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS || id.z >= ROW_REGIONS {
         return;
     }
+    let column_begin = region_begin(id.z, size.x, ROW_REGIONS);
 #ifdef PROJECTIVE
 #ifdef AVERAGE
     let extinction = 0.0;
@@ -61,10 +68,10 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     let extinction = medium.extinction;
 #endif
     let reach = reference_reach(rows, f32(size.y), f32(row));
-    // The weight of a texel, the sum of all so far, and the transmittance of the texel.
-    var weights = RowWeights(0.0, 0.0, 1.0);
+    // Transmittance from the start of the region.
     var through = 1.0;
-    var edge = texel_begin(rows, f32(size.x), 0u);
+    var edge = texel_begin(rows, f32(size.x), column_begin);
+    var weights = RowWeights(0.0, 0.0, 1.0);
 #else ifdef AVERAGE
     var weights = row_weights(0.0);
 #else
@@ -72,8 +79,8 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     var weights = row_weights(medium.extinction * slice.radius_max / (f32(size.x) * slice.reference));
 #endif
     var means = array<vec4<f32>, PER_THREAD>();
-    for (var column = 0u; column < size.x; column++) {
-        let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
+    let end = region_begin(id.z + 1u, size.x, ROW_REGIONS);
+    for (var column = column_begin; column < end; column++) {
 #ifdef PROJECTIVE
         let next = texel_end(rows, f32(size.x), column);
         let metres = (next - edge) * reach;
@@ -82,13 +89,19 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
         through *= exp(-extinction * metres);
         edge = next;
 #endif
-        var series = series_at(min(depth + surface_bias(4u * LAYERS), 1.0), first);
+        let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
+        let blocker = min(depth + surface_bias(4u * LAYERS), 1.0);
+        var series = series_at(blocker, first);
         for (var group = 0u; group < PER_THREAD; group++) {
             means[group] = running_mean(means[group], series.basis, weights);
             if first + group < LAYERS {
                 textureStore(bases, vec2<u32>(column, row), first + group, stored_from_basis(means[group]));
             }
+#ifdef DIRECT
+            series = series_at(blocker, first + group + 1u);
+#else
             series = series_next(series);
+#endif
         }
 #ifndef PROJECTIVE
         weights = row_weights_next(weights);

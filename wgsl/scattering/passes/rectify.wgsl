@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Resamples a standard shadow map into the rectified map, where view rays run along rows at constant depth.
-// source: thesis 4.4.1; with PROJECTIVE the map of 4.4.2, where it is not rasterised (pass project).
+// source: thesis 4.4.1; with PROJECTIVE the map of 4.4.2, where it is not drawn (pass project).
 // note: Nearest texel: a blend of two depths is the depth of nothing. Blockers outside the bounds of a slice are
 // note: clamped into its guard band; light rays outside the shadow map, or without a blocker, store 1.
 // note: Non-finite depths count as empty.
+// definition DEPTH_WARP: stretch depths near the light, see warped_depth; without PROJECTIVE.
 // definition PROJECTIVE: projective rows instead of epipolar slices.
 // binding light: the directional light and its shadow map's clip space.
 // binding frame: the frame of the slices; absent with PROJECTIVE.
@@ -18,7 +19,7 @@
 #import airlight::scattering::projective::{ProjectiveRows, depth_from_blocker, light_ray_point, x_from_column}
 #else
 #import airlight::scattering::rectify::{
-    Frame, row_azimuth, azimuth_direction, slice_from_texel, depth_from_blocker
+    Frame, row_azimuth, azimuth_direction, slice_from_texel, depth_from_blocker, warped_depth
 }
 #endif
 
@@ -79,7 +80,10 @@ fn rectify(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef PROJECTIVE
         let depth = depth_from_blocker(rows, x, -above);
 #else
-        let depth = depth_from_blocker(slice, slice.radius_max * step / f32(size.x), above);
+        var depth = depth_from_blocker(slice, slice.radius_max * step / f32(size.x), above);
+#endif
+#ifdef DEPTH_WARP
+        depth = warped_depth(depth);
 #endif
         let empty = !inside || stored == light.far_depth;
         textureStore(rectified, vec2<u32>(column, id.y), vec4<f32>(select(depth, 1.0, empty), 0.0, 0.0, 1.0));
