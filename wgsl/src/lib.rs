@@ -91,6 +91,7 @@ modules! {
     core::prefix_sum [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
+    scattering::projective ["core::fourier_basis", "core::prefix_sum"],
     scattering::single_scatter ["core::phase", "core::prefix_sum"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
 }
@@ -101,6 +102,7 @@ passes! {
     core/tonemap,
     scattering/slices,
     scattering/rectify,
+    scattering/project,
     scattering/filter,
     scattering/evaluate,
     scattering/march,

@@ -11,6 +11,7 @@ mod tonemap;
 pub use camera::{Camera, CameraError, DepthRange, OrthographicView, PerspectiveView, View};
 pub use light::{DIRECTIONAL, Light, LightError, POINT, SPOT, direction_from_angles};
 pub use raster::{Drawing, MeshBuffers, Pictures, Raster, Sky};
+pub(crate) use raster::{MESH_VERTEX, begin};
 pub use scan::Scan;
 pub use shadow_views::{Cascades, MAX_VIEWS, ShadowViews};
 pub use tonemap::{Tonemap, TonemapParameters};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light shafts by marching.
 
-use super::{Inputs, Rectification, ScatteringError, Weighting, check_size, picture_pass};
+use super::{Inputs, ProjectiveMap, Rectification, ScatteringError, Weighting, check_size, picture_pass};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Buffer, Texture};
@@ -34,6 +34,8 @@ pub enum Along<'a> {
         /// Steps a ray, at least 1.
         steps: u32,
     },
+    /// Rows of a projective map, the exact sum over its texels.
+    Projective(&'a ProjectiveMap),
     /// The standard shadow map, by equal steps.
     ShadowMap {
         /// Steps a ray, at least 1.
@@ -66,6 +68,7 @@ impl March {
         let mut steps = 0;
         match along {
             Along::Rows(_) => {}
+            Along::Projective(_) => definitions = definitions.flag("PROJECTIVE"),
             Along::RowSteps { steps: asked, .. } => {
                 definitions = definitions.flag("STEPS");
                 steps = *asked;
@@ -105,6 +108,9 @@ impl March {
                 ("slices", (&map.slices).into()),
                 ("rectified", (&map.rectified).into()),
             ]);
+        }
+        if let Along::Projective(map) = along {
+            resources.extend([("rows", (&map.rows).into()), ("rectified", (&map.rectified).into())]);
         }
         self.pass.bind_known(gpu, &resources)
     }

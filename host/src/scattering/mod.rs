@@ -8,6 +8,9 @@ mod composite;
 mod march;
 mod medium;
 mod prefiltered;
+mod projective;
+mod projective_map;
+mod projective_prefiltered;
 mod rectification;
 mod settings;
 
@@ -15,6 +18,12 @@ pub use composite::Composite;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
 pub use prefiltered::{Prefiltered, PrefilteredBound};
+pub use projective::{
+    Choice, OBLIQUENESS_LIMIT, Projective, ProjectiveError, ProjectiveRows, ProjectiveSplit, choose,
+    projective_rows,
+};
+pub use projective_map::{ProjectiveMap, ProjectiveRaster, ProjectiveRasterBound};
+pub use projective_prefiltered::{ProjectivePrefiltered, ProjectivePrefilteredBound};
 pub use rectification::{Frame, Rectification};
 pub use settings::{
     BasisFormat, Filtering, Reference, ScatteringError, Settings, SettingsError, Start, Weighting,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light shafts by prefiltered bases (thesis 4.3).
 
-use super::{BasisFormat, Inputs, Rectification, ScatteringError, Settings, check_size, picture_pass};
+use super::{Inputs, Rectification, ScatteringError, Settings, check_size, picture_pass};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Sampler, Texture};
@@ -42,10 +42,7 @@ impl Prefiltered {
     ) -> Result<Self, ScatteringError> {
         settings.validate(gpu)?;
         check_size(gpu, "a picture", viewport)?;
-        let format = match settings.format {
-            BasisFormat::Rgba8Unorm => TextureFormat::Rgba8Unorm,
-            BasisFormat::Rgba16Float => TextureFormat::Rgba16Float,
-        };
+        let format = settings.format.texture_format();
         let [width, height] = settings.map;
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
         let filter = settings.filter_definitions();

@@ -19,6 +19,9 @@ pub enum SettingsError {
     /// Regions of a row.
     #[error("{0} regions a row are impossible: the number must be from 1 to 8")]
     Regions(u32),
+    /// An orthographic camera, whose rays begin inside their rows.
+    #[error("an orthographic camera needs `Start::NearPlane` in the settings: its rays begin there")]
+    OrthographicStart,
     /// Size of the rectified map or the picture.
     #[error("{what} of {width}x{height} is impossible: both must lie between 1 and {limit} on this device")]
     Size {
@@ -62,6 +65,15 @@ pub enum BasisFormat {
     Rgba8Unorm,
     /// 16 bits a basis.
     Rgba16Float,
+}
+
+impl BasisFormat {
+    pub(super) fn texture_format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+            Self::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        }
+    }
 }
 
 /// How the visibility along a ray is averaged.

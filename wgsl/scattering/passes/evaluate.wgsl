@@ -13,18 +13,20 @@
 // definition REGIONS: regions that the rows were filtered in, as in the filter; more than one costs more reads a pixel.
 // definition NEAR_PLANE: rays, and the medium, begin at the near plane instead of the eye.
 // definition DEPTH_WARP: as in rectify.
-// binding camera: the camera, perspective.
+// definition PROJECTIVE: projective rows instead of epipolar slices. An orthographic camera needs NEAR_PLANE as well.
+// binding camera: the camera, perspective; with PROJECTIVE any.
 // binding light: the directional light and its shadow map's clip space.
 // binding medium: the medium.
-// binding frame: the frame of the slices.
-// binding slices: their bounds, rgba32float, one texel a slice.
+// binding frame: the frame of the slices; absent with PROJECTIVE.
+// binding slices: their bounds, rgba32float, one texel a slice; absent with PROJECTIVE.
+// binding rows: the projective rows; with PROJECTIVE only.
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
 // binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH.
 // binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-#import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel}
+#import airlight::core::camera::{Camera, view_ray, perspective_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{
     series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored
@@ -32,6 +34,10 @@
 #import airlight::core::light::Light
 #import airlight::core::prefix_sum::prefix_weight
 #import airlight::scattering::march::march_shadow_map
+#import airlight::scattering::projective::{
+    ProjectiveRows, ProjectiveRay, projective_ray, reference_reach, column_from_x, x_from_column, texel_begin,
+    filtered_column, stretch_weight
+}
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
 }
@@ -41,8 +47,12 @@
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
 @group(#{GROUP}) @binding(1) var<uniform> light: Light;
 @group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
+#ifdef PROJECTIVE
+@group(#{GROUP}) @binding(10) var<uniform> rows: ProjectiveRows;
+#else
 @group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
 @group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
+#endif
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
 #ifdef EPIPOLE_MARCH
 @group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
@@ -69,7 +79,12 @@ const EPIPOLE_STEPS: u32 = 96u;
 fn filtered_series(ray: RowRay, column: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(bases).xy);
 #ifdef NEAREST
-    let place = vec2<u32>(clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0));
+#ifdef PROJECTIVE
+    let row = floor(ray.row + 0.5);
+#else
+    let row = f32(nearest_row(frame, ray.row));
+#endif
+    let place = vec2<u32>(clamp(vec2<f32>(column, row), vec2<f32>(0.0), size - 1.0));
 #else
     let place = vec2<f32>(column, ray.row + 0.5) / size;
 #endif
@@ -95,6 +110,42 @@ fn filtered_series(ray: RowRay, column: f32) -> f32 {
     return visibility;
 }
 
+#ifdef PROJECTIVE
+/// Mean visibility of a view ray between its ends. `row_ray`: the same in columns; `extinction` in 1/m, 0 for plain means.
+fn projective_visibility(along: ProjectiveRay, row_ray: RowRay, extinction: f32) -> f32 {
+    let size = textureDimensions(bases);
+    let width = f32(size.x);
+    let reach = reference_reach(rows, f32(size.y), row_ray.row);
+    let first = region_of(row_ray.begin, size.x, ROW_REGIONS);
+    let last = max(region_of(row_ray.end, size.x, ROW_REGIONS), first);
+    var sum = 0.0;
+    var total = 0.0;
+    for (var region = first; region <= last; region++) {
+        let column = region_begin(region, size.x, ROW_REGIONS);
+        let start = texel_begin(rows, width, column);
+        let from_x = max(along.begin, start);
+        var to_x = max(along.end, from_x);
+        if region < last {
+            to_x = max(texel_begin(rows, width, region_begin(region + 1u, size.x, ROW_REGIONS)), from_x);
+        }
+        var mean = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, to_x));
+#ifdef NEAR_PLANE
+        if from_x > start {
+            let whole = stretch_weight(extinction, (to_x - start) * reach);
+            let before = stretch_weight(extinction, (from_x - start) * reach);
+            let skipped = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, from_x));
+            mean = clamp((mean * whole - skipped * before) / max(whole - before, 1e-6 * whole + 1e-30), 0.0, 1.0);
+        }
+#endif
+        let begins = (from_x - along.begin) * along.reach;
+        let weight = exp(-extinction * begins) * stretch_weight(extinction, (to_x - from_x) * along.reach);
+        sum += mean * weight;
+        total += weight;
+    }
+    // A ray of no length has no mean and scatters nothing.
+    return select(0.0, sum / max(total, 1e-37), total > 1e-30);
+}
+#else
 /// Mean visibility of a ray over its stretch of the row. `reference_step`: optical depth of a texel by which the bases
 /// are weighted; `optical_step`: that of the ray itself, by which regions are put together.
 fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
@@ -123,30 +174,59 @@ fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
     }
     return select(0.0, sum / total, total > 0.0);
 }
+#endif
 
 /// Radiance, and mean visibility in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+#ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
+    let width = f32(textureDimensions(bases).x);
+#ifdef PROJECTIVE
+    let ray = view_ray(camera, ndc);
+    let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+    let cosine = dot(ray.direction, light.direction);
+    var along = projective_ray(rows, f32(textureDimensions(bases).y), ray.origin, ray.direction, distance);
+#ifdef NEAR_PLANE
+    // An orthographic ray begins there anyway.
+    let near = distance_from_depth(camera, ray, ndc, camera.near_depth, distance);
+    along.begin += near / along.reach;
+#else
+    let near = 0.0;
+#endif
+    var row_ray = RowRay(
+        along.row, column_from_x(rows, width, along.begin), column_from_x(rows, width, along.end), along.depth
+    );
+#ifdef NEAR_PLANE
+    // Short stretches are widened towards the eye, as those of slices are.
+    let widened = stretch_begin(row_ray.begin, row_ray.end);
+    if widened < row_ray.begin {
+        row_ray.begin = widened;
+        along.begin = min(along.begin, x_from_column(rows, width, widened));
+    }
+#endif
+    let texels = row_ray.end - row_ray.begin;
+    var visibility = projective_visibility(along, row_ray, extinction);
+#else
     let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
+    let distance = ray.distance;
+    let cosine = ray.cosine;
     // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
-    let width = f32(textureDimensions(bases).x);
     let texels = clamp(width * ray.distance * ray.sine / slice.radius_max, 0.0, width);
     var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(slice, ray));
 #ifdef DEPTH_WARP
     row_ray.depth = warped_depth(row_ray.depth);
 #endif
 #ifdef NEAR_PLANE
-    let near = epipolar_ray(frame, ndc, camera.near_depth, ray.distance).distance;
+    let near = epipolar_ray(frame, ndc, camera.near_depth, distance).distance;
     row_ray.begin = stretch_begin(width * near * ray.sine / slice.radius_max, texels);
 #else
     let near = 0.0;
-#endif
-#ifdef AVERAGE
-    let extinction = 0.0;
-#else
-    let extinction = medium.extinction;
 #endif
     // Optical depth of a texel of a ray at right angles to the light.
     let across = extinction * slice.radius_max / width;
@@ -157,19 +237,25 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #else
     var visibility = filtered_series(row_ray, prefix_column(texels, 0.0));
 #endif
+#endif
     visibility = clamp(visibility, 0.0, 1.0);
 
 #ifdef EPIPOLE_MARCH
     let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
     let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
-    let direction = perspective_ray(camera, ndc).direction;
+#ifdef PROJECTIVE
+    let march_ray = ray;
+#else
+    let march_ray = perspective_ray(camera, ndc);
+#endif
+    let march_from = march_ray.origin + near * march_ray.direction;
     let marched = march_shadow_map(
-        shadow_map, light, camera.eye + near * direction, direction, ray.distance - near, extinction, steps, 0.5
+        shadow_map, light, march_from, march_ray.direction, distance - near, extinction, steps, 0.5
     );
     visibility = mix(visibility, marched, near_epipole);
 #endif
 
-    let radiance = in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, visibility);
+    let radiance = in_scattered(medium, light.radiance, cosine, distance - near, visibility);
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
 }
 

@@ -9,23 +9,33 @@
 // definition BASES_PER_THREAD: bases a thread filters, a multiple of 4.
 // definition REGIONS: regions of equal width that a row is filtered in, each by itself and by a thread of its own.
 // definition DIRECT: sines and cosines of every basis instead of the recurrence by rotation.
+// definition PROJECTIVE: projective rows, whose texels differ in length, instead of epipolar slices.
 // definition AVERAGE: plain means (average visibility) instead of means weighted by transmittance.
 // definition RGBA16FLOAT: store as rgba16float instead of rgba8unorm.
 // binding medium: the medium, for its extinction; absent with AVERAGE.
-// binding slices: bounds of the slices, rgba32float; absent with AVERAGE.
+// binding slices: bounds of the slices, rgba32float; absent with AVERAGE and with PROJECTIVE.
+// binding rows: the projective rows; with PROJECTIVE only.
 // binding rectified: the rectified map, depth 0..1.
 // binding bases: out, M/4 layers of the filtered bases; -1..1 is stored as 0..1.
 
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis, surface_bias}
-#import airlight::core::prefix_sum::{row_weights, row_weights_next, running_mean}
+#import airlight::core::prefix_sum::{RowWeights, row_weights, row_weights_next, running_mean}
+#import airlight::scattering::projective::{
+    ProjectiveRows, reference_reach, texel_begin, texel_end, stretch_weight
+}
 #import airlight::scattering::rectify::slice_from_texel
 #import airlight::scattering::rows::region_begin
 #import airlight::scattering::single_scatter::Medium
 
 #ifndef AVERAGE
 @group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
+#ifndef PROJECTIVE
 @group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
+#endif
+#endif
+#ifdef PROJECTIVE
+@group(#{GROUP}) @binding(4) var<uniform> rows: ProjectiveRows;
 #endif
 @group(#{GROUP}) @binding(2) var rectified: texture_2d<f32>;
 #ifdef RGBA16FLOAT
@@ -50,7 +60,19 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS || id.z >= ROW_REGIONS {
         return;
     }
+    let column_begin = region_begin(id.z, size.x, ROW_REGIONS);
+#ifdef PROJECTIVE
 #ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
+    let reach = reference_reach(rows, f32(size.y), f32(row));
+    // Transmittance from the start of the region.
+    var through = 1.0;
+    var edge = texel_begin(rows, f32(size.x), column_begin);
+    var weights = RowWeights(0.0, 0.0, 1.0);
+#else ifdef AVERAGE
     var weights = row_weights(0.0);
 #else
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
@@ -58,7 +80,15 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
 #endif
     var means = array<vec4<f32>, PER_THREAD>();
     let end = region_begin(id.z + 1u, size.x, ROW_REGIONS);
-    for (var column = region_begin(id.z, size.x, ROW_REGIONS); column < end; column++) {
+    for (var column = column_begin; column < end; column++) {
+#ifdef PROJECTIVE
+        let next = texel_end(rows, f32(size.x), column);
+        let metres = (next - edge) * reach;
+        weights.weight = through * stretch_weight(extinction, metres);
+        weights.total += weights.weight;
+        through *= exp(-extinction * metres);
+        edge = next;
+#endif
         let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
         let blocker = min(depth + surface_bias(4u * LAYERS), 1.0);
         var series = series_at(blocker, first);
@@ -73,6 +103,8 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
             series = series_next(series);
 #endif
         }
+#ifndef PROJECTIVE
         weights = row_weights_next(weights);
+#endif
     }
 }

@@ -4,12 +4,14 @@
 // note: Rows: the nearest row, one texture load a step; one step a texel, or with STEPS `steps` equal steps a ray.
 // definition AVERAGE: average visibility instead of visibility weighted by transmittance.
 // definition STEPS: rows by `steps` equal steps, average visibility.
+// definition PROJECTIVE: rows of a projective map, the exact sum over its texels; without STEPS and SHADOW_MAP.
 // definition SHADOW_MAP: march the standard shadow map by `steps` equal steps a ray.
-// binding camera: the camera, perspective (rows) or any (shadow map).
+// binding camera: the camera, perspective (epipolar rows) or any.
 // binding light: the directional light.
 // binding medium: the medium.
-// binding frame: the frame of the slices; rows only.
-// binding slices: their bounds, rgba32float; rows only.
+// binding frame: the frame of the slices; epipolar rows only.
+// binding slices: their bounds, rgba32float; epipolar rows only.
+// binding rows: the projective rows; with PROJECTIVE only.
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
 // binding rectified: the rectified map; rows only.
 // binding shadow_map: depth of the standard shadow map; with SHADOW_MAP only.
@@ -20,6 +22,7 @@
 #import airlight::core::finite::finite_or
 #import airlight::core::light::Light
 #import airlight::scattering::march::{march_row, march_row_steps, march_shadow_map}
+#import airlight::scattering::projective::{ProjectiveRows, projective_ray, march_projective_row}
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray
 }
@@ -40,8 +43,12 @@ struct MarchParameters {
 #ifdef SHADOW_MAP
 @group(#{GROUP}) @binding(7) var shadow_map: texture_2d<f32>;
 #else
+#ifdef PROJECTIVE
+@group(#{GROUP}) @binding(10) var<uniform> rows: ProjectiveRows;
+#else
 @group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
 @group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
+#endif
 @group(#{GROUP}) @binding(6) var rectified: texture_2d<f32>;
 #endif
 #ifdef SHADOW_MAP
@@ -57,6 +64,10 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
 #ifdef SHADOW_MAP
+    let ray = view_ray(camera, ndc);
+    let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+    let cosine = dot(ray.direction, light.direction);
+#else ifdef PROJECTIVE
     let ray = view_ray(camera, ndc);
     let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
     let cosine = dot(ray.direction, light.direction);
@@ -76,6 +87,11 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
         shadow_map, light, ray.origin, ray.direction, distance, extinction,
         max(parameters.steps, 1u), parameters.offset
     );
+#else ifdef PROJECTIVE
+    let size = textureDimensions(rectified);
+    let along = projective_ray(rows, f32(size.y), ray.origin, ray.direction, distance);
+    let row = min(u32(along.row + 0.5), size.y - 1u);
+    let visibility = march_projective_row(rectified, rows, row, along, extinction);
 #else
     let row = nearest_row(frame, ray.row);
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
