@@ -88,11 +88,17 @@ modules! {
     core::color [],
     core::fourier_basis [],
     core::phase [],
+    core::picture [],
     core::prefix_sum [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
     scattering::projective ["core::fourier_basis", "core::prefix_sum"],
     scattering::single_scatter ["core::phase", "core::prefix_sum"],
+    scattering::local_light [
+        "core::camera", "core::phase", "scattering::rectify", "scattering::single_scatter"
+    ],
+    scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
+    scattering::visibility_fourier ["core::fourier_basis"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
 }
 
@@ -102,10 +108,14 @@ passes! {
     core/tonemap,
     scattering/slices,
     scattering/rectify,
+    scattering/rectify_projective,
     scattering/project,
     scattering/filter,
     scattering/evaluate,
+    scattering/evaluate_projective,
+    scattering/evaluate_local,
     scattering/march,
+    scattering/march_light,
     scattering/composite,
 }
 

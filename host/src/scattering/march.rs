@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light shafts by marching.
 
-use super::{Inputs, ProjectiveMap, Rectification, ScatteringError, Weighting, check_size, picture_pass};
+use super::{
+    Inputs, LightForm, ProjectiveMap, Rectification, ScatteringError, Weighting, check_size, light_resources,
+    picture_pass,
+};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
-use crate::resource::{Buffer, Texture};
+use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use encase::ShaderType;
@@ -47,6 +50,7 @@ pub enum Along<'a> {
 pub struct March {
     pass: Pass,
     parameters: Buffer,
+    light_sampler: Sampler,
     /// Radiance, and visibility in alpha.
     pub scattered: Texture,
 }
@@ -85,6 +89,37 @@ impl March {
         Ok(Self {
             pass: picture_pass(gpu, shaders, "scattering/march", &definitions, "fragment_march")?,
             parameters: Buffer::uniform(gpu, &parameters),
+            light_sampler: Sampler::linear(gpu),
+            scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
+        })
+    }
+
+    /// Builds the pass that marches the shadow maps of a light of any kind by `steps` equal steps a ray, at least 1.
+    ///
+    /// # Errors
+    /// [`ScatteringError`].
+    pub fn of_light(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        form: LightForm,
+        steps: u32,
+        weighting: Weighting,
+        viewport: [u32; 2],
+    ) -> Result<Self, ScatteringError> {
+        if form.plain() {
+            return Self::new(gpu, shaders, &Along::ShadowMap { steps }, weighting, viewport);
+        }
+        check_size(gpu, "a picture", viewport)?;
+        form.validate()?;
+        let mut definitions = form.texture_definitions(form.shadow_definitions(Definitions::new()));
+        if weighting == Weighting::Average {
+            definitions = definitions.flag("AVERAGE");
+        }
+        let parameters = MarchParameters { steps, offset: 0.5, reserved_a: 0, reserved_b: 0 };
+        Ok(Self {
+            pass: picture_pass(gpu, shaders, "scattering/march_light", &definitions, "fragment_march")?,
+            parameters: Buffer::uniform(gpu, &parameters),
+            light_sampler: Sampler::linear(gpu),
             scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
         })
     }
@@ -99,9 +134,9 @@ impl March {
             ("light", inputs.light.into()),
             ("medium", inputs.medium.into()),
             ("depth", inputs.depth.into()),
-            ("shadow_map", inputs.shadow_map.into()),
             ("parameters", (&self.parameters).into()),
         ];
+        resources.extend(light_resources(inputs, &self.light_sampler));
         if let Along::Rows(map) | Along::RowSteps { map, .. } = along {
             resources.extend([
                 ("frame", (&map.frame).into()),

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Single scattering of a directional light in a homogeneous medium: the host's side of `wgsl/scattering`.
+//! Single scattering of a light in a homogeneous medium: the host's side of `wgsl/scattering`.
 //!
 //! The order of [`Prefiltered::record`] is that of the thesis, 4.3: bounds of the slices, rectified
 //! shadow map, filtered bases, one dot product a pixel.
 
 mod composite;
+mod light_form;
 mod march;
 mod medium;
 mod prefiltered;
@@ -15,6 +16,7 @@ mod rectification;
 mod settings;
 
 pub use composite::Composite;
+pub use light_form::LightForm;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
 pub use prefiltered::{Prefiltered, PrefilteredBound};
@@ -31,8 +33,8 @@ pub use settings::{
 };
 
 use crate::gpu::Gpu;
-use crate::pass::{Pass, PassError};
-use crate::resource::{Buffer, Texture};
+use crate::pass::{Pass, PassError, Resource};
+use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use wgpu::TextureFormat;
@@ -56,6 +58,18 @@ pub struct Inputs<'a> {
     pub shadow_maps: Option<&'a Texture>,
     /// What colours the light, over the whole standard shadow map.
     pub light_texture: Option<&'a Texture>,
+}
+
+/// The resources that only some lights have, by name.
+pub(crate) fn light_resources<'a>(
+    inputs: &Inputs<'a>,
+    sampler: &'a Sampler,
+) -> Vec<(&'static str, Resource<'a>)> {
+    let mut resources = vec![("shadow_map", inputs.shadow_map.into()), ("light_sampler", sampler.into())];
+    resources.extend(inputs.shadow_views.map(|views| ("shadow_views", views.into())));
+    resources.extend(inputs.shadow_maps.map(|maps| ("shadow_maps", maps.into())));
+    resources.extend(inputs.light_texture.map(|texture| ("light_texture", texture.into())));
+    resources
 }
 
 /// The fragment form of a pass: a fifth faster than its compute form on a software adapter, and as good elsewhere.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light shafts by prefiltered bases (thesis 4.3).
 
-use super::{Inputs, Rectification, ScatteringError, Settings, check_size, picture_pass};
+use super::{Inputs, Rectification, ScatteringError, Settings, check_size, light_resources, picture_pass};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Sampler, Texture};
@@ -16,7 +16,8 @@ pub struct Prefiltered {
     filter_pass: Pass,
     evaluate_pass: Pass,
     sampler: Sampler,
-    /// Filtered bases, M/4 layers.
+    light_sampler: Sampler,
+    /// Filtered bases, M/4 layers; with a fall-off those of each colour, and one of the mean fall-off.
     pub bases: Texture,
     /// Radiance, and visibility in alpha.
     pub scattered: Texture,
@@ -47,13 +48,19 @@ impl Prefiltered {
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
         let filter = settings.filter_definitions();
         let evaluate = settings.evaluate_definitions();
+        let (pass, entry) = if settings.light.local() {
+            ("scattering/evaluate_local", "fragment_evaluate_local")
+        } else {
+            ("scattering/evaluate", "fragment_evaluate")
+        };
         Ok(Self {
             settings,
             rectification: Rectification::from_settings(gpu, shaders, &settings)?,
             filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
-            evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate", &evaluate, "fragment_evaluate")?,
+            evaluate_pass: picture_pass(gpu, shaders, pass, &evaluate, entry)?,
             sampler: Sampler::rows(gpu),
-            bases: Texture::array(gpu, [width, height, settings.bases / 4], format, usage),
+            light_sampler: Sampler::linear(gpu),
+            bases: Texture::array(gpu, [width, height, settings.light.layers(settings.bases)], format, usage),
             scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
         })
     }
@@ -63,18 +70,18 @@ impl Prefiltered {
     /// # Errors
     /// [`PassError`].
     pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<PrefilteredBound, PassError> {
-        let resources = [
+        let mut resources = vec![
             ("camera", inputs.camera.into()),
             ("light", inputs.light.into()),
             ("medium", inputs.medium.into()),
             ("frame", (&self.rectification.frame).into()),
             ("slices", (&self.rectification.slices).into()),
             ("depth", inputs.depth.into()),
-            ("shadow_map", inputs.shadow_map.into()),
             ("rectified", (&self.rectification.rectified).into()),
             ("bases", (&self.bases).into()),
             ("bases_sampler", (&self.sampler).into()),
         ];
+        resources.extend(light_resources(inputs, &self.light_sampler));
         Ok(PrefilteredBound {
             rectification: self.rectification.bind(gpu, inputs)?,
             filter: self.filter_pass.bind_known(gpu, &resources)?,

@@ -7,7 +7,6 @@ use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError, RenderStages};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
-use airlight_validate::Definitions;
 use encase::ShaderType;
 use wgpu::TextureFormat;
 
@@ -27,11 +26,10 @@ impl ProjectiveMap {
     /// [`ScatteringError`].
     pub fn resampled(gpu: &Gpu, shaders: &Shaders, map: [u32; 2]) -> Result<Self, ScatteringError> {
         check_size(gpu, "a rectified map", map)?;
-        let definitions = Definitions::new().flag("PROJECTIVE");
         Ok(Self {
             rows: Buffer::storage(gpu, u64::from(ProjectiveRows::min_size())),
             rectified: Texture::storage(gpu, map, TextureFormat::R32Float),
-            resample: Some(Pass::compute_with(gpu, shaders, "scattering/rectify", &definitions)?),
+            resample: Some(Pass::compute(gpu, shaders, "scattering/rectify_projective", "default")?),
         })
     }
 

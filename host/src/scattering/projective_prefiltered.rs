@@ -52,12 +52,12 @@ impl ProjectivePrefiltered {
         check_size(gpu, "a picture", viewport)?;
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
         let filter = settings.filter_definitions().flag("PROJECTIVE");
-        let evaluate = settings.evaluate_definitions().flag("PROJECTIVE");
+        let evaluate = settings.projective_definitions();
         Ok(Self {
             settings,
             map,
             filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
-            evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate", &evaluate, "fragment_evaluate")?,
+            evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate_projective", &evaluate, "fragment_evaluate_projective")?,
             sampler: Sampler::rows(gpu),
             bases: Texture::array(
                 gpu,

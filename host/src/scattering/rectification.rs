@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The rectified shadow map (thesis 4.4).
 
-use super::{Inputs, ScatteringError, Settings, check_size};
+use super::{Inputs, ScatteringError, Settings, check_size, light_resources};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
-use crate::resource::{Buffer, Texture};
+use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
 use encase::ShaderType;
 use glam::{Vec3, Vec4};
@@ -49,6 +49,7 @@ pub struct Frame {
 pub struct Rectification {
     slices_pass: Pass,
     rectify_pass: Pass,
+    light_sampler: Sampler,
     /// Uniform `Frame`, written by the pass `slices`.
     pub frame: Buffer,
     /// Bounds of the slices, one texel each.
@@ -77,6 +78,7 @@ impl Rectification {
         Ok(Self {
             slices_pass: compute("scattering/slices", settings.slices_definitions())?,
             rectify_pass: compute("scattering/rectify", settings.rectify_definitions())?,
+            light_sampler: Sampler::linear(gpu),
             frame: Buffer::storage(gpu, u64::from(Frame::min_size())),
             slices: Texture::storage(gpu, [map[1], 1], TextureFormat::Rgba32Float),
             rectified: Texture::storage(gpu, map, TextureFormat::R32Float),
@@ -88,15 +90,15 @@ impl Rectification {
     /// # Errors
     /// [`PassError`].
     pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<[Bound; 2], PassError> {
-        let resources = [
+        let mut resources = vec![
             ("camera", inputs.camera.into()),
             ("light", inputs.light.into()),
             ("medium", inputs.medium.into()),
             ("frame", (&self.frame).into()),
             ("slices", (&self.slices).into()),
-            ("shadow_map", inputs.shadow_map.into()),
             ("rectified", (&self.rectified).into()),
         ];
+        resources.extend(light_resources(inputs, &self.light_sampler));
         Ok([self.slices_pass.bind_known(gpu, &resources)?, self.rectify_pass.bind_known(gpu, &resources)?])
     }
 

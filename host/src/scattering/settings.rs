@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What the prefiltered method can be told, and what is impossible.
 
+use super::LightForm;
 use crate::core::Camera;
 use crate::gpu::Gpu;
 use crate::pass::PassError;
@@ -33,6 +34,19 @@ pub enum SettingsError {
         height: u32,
         /// The device's limit.
         limit: u32,
+    },
+    /// What no pass is made for.
+    #[error("this light is impossible: {0}")]
+    LightForm(&'static str),
+    /// The eye is at a spot or point light.
+    #[error(
+        "the eye is {distance} m from the light: at least {least} m are needed for rows around it; march instead"
+    )]
+    LightAtEye {
+        /// Metres between them; not finite where one of them is nowhere.
+        distance: f32,
+        /// The least, metres.
+        least: f32,
     },
     /// A property of the medium.
     #[error("{name} {value} is impossible: it must be {range}")]
@@ -145,6 +159,8 @@ pub struct Settings {
     pub start: Start,
     /// New sines for every basis instead of the recurrence, to compare.
     pub direct_sines: bool,
+    /// The kind of light; all others than the default take one region and begin at the eye.
+    pub light: LightForm,
 }
 
 impl Default for Settings {
@@ -163,6 +179,7 @@ impl Default for Settings {
             reference: Reference::default(),
             start: Start::default(),
             direct_sines: false,
+            light: LightForm::default(),
         }
     }
 }
@@ -194,15 +211,22 @@ impl Settings {
         if !(1..=8).contains(&self.regions) {
             return Err(SettingsError::Regions(self.regions));
         }
+        self.light.validate()?;
+        let parts = self.regions > 1 || self.start == Start::NearPlane;
+        if parts && (self.light.local() || self.light.texture) {
+            return Err(SettingsError::LightForm(
+                "rows of a spot, a point light or a light texture are filtered in one region, from the eye on",
+            ));
+        }
         check_size(gpu, "a rectified map", self.map)
     }
 
     pub(super) fn slices_definitions(&self) -> Definitions {
-        flags(&[("BISECTRIX", self.reference == Reference::Bisectrix)])
+        self.light.local_definitions(flags(&[("BISECTRIX", self.reference == Reference::Bisectrix)]))
     }
 
     pub(super) fn rectify_definitions(&self) -> Definitions {
-        flags(&[("DEPTH_WARP", self.depth_warp)])
+        self.light.shadow_definitions(flags(&[("DEPTH_WARP", self.depth_warp)]))
     }
 
     pub(super) fn filter_definitions(&self) -> Definitions {
@@ -213,7 +237,7 @@ impl Settings {
         ])
         .set("BASES", self.bases as i32)
         .set("BASES_PER_THREAD", self.bases_per_thread.min(self.bases) as i32);
-        self.with_regions(definitions)
+        self.with_regions(self.light.color_definitions(self.light.local_definitions(definitions)))
     }
 
     pub(super) fn evaluate_definitions(&self) -> Definitions {
@@ -225,9 +249,15 @@ impl Settings {
             ("AVERAGE", self.weighting == Weighting::Average),
             ("NEAREST", self.filtering == Filtering::Nearest),
             ("NEAR_PLANE", self.start == Start::NearPlane),
+            ("PER_POINT", self.epipole_march && !self.light.plain()),
         ])
         .set("BASES", self.bases as i32);
-        self.with_regions(definitions)
+        self.with_regions(self.light.color_definitions(self.light.shadow_definitions(definitions)))
+    }
+
+    /// Of the pass `evaluate_projective`, which knows no epipole.
+    pub(super) fn projective_definitions(&self) -> Definitions {
+        Self { epipole_march: false, depth_warp: false, ..*self }.evaluate_definitions()
     }
 
     fn with_regions(&self, definitions: Definitions) -> Definitions {

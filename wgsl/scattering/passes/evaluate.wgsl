@@ -6,6 +6,10 @@
 // note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
 // note: texels, very short rays included, blended in without a seam.
 // definition BASES: number M of bases, as in the filter.
+// definition COLORS: 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
+// definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
+// definition PER_POINT: EPIPOLE_MARCH looks up every step by itself; needed with COLORS or SHADOW_ARRAY.
+// definition SHADOW_ARRAY: EPIPOLE_MARCH goes through the shadow maps of several views.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
 // definition AVERAGE: the bases are plain means, and so is that march.
@@ -13,49 +17,55 @@
 // definition REGIONS: regions that the rows were filtered in, as in the filter; more than one costs more reads a pixel.
 // definition NEAR_PLANE: rays, and the medium, begin at the near plane instead of the eye.
 // definition DEPTH_WARP: as in rectify.
-// definition PROJECTIVE: projective rows instead of epipolar slices. An orthographic camera needs NEAR_PLANE as well.
-// binding camera: the camera, perspective; with PROJECTIVE any.
+// binding camera: the camera, perspective.
 // binding light: the directional light and its shadow map's clip space.
 // binding medium: the medium.
-// binding frame: the frame of the slices; absent with PROJECTIVE.
-// binding slices: their bounds, rgba32float, one texel a slice; absent with PROJECTIVE.
-// binding rows: the projective rows; with PROJECTIVE only.
+// binding frame: the frame of the slices.
+// binding slices: their bounds, rgba32float, one texel a slice.
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
-// binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH.
-// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
+// binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH, without SHADOW_ARRAY.
+// binding shadow_maps: depth of the views, a layer each; only with EPIPOLE_MARCH and SHADOW_ARRAY.
+// binding shadow_views: the views; only with EPIPOLE_MARCH and SHADOW_ARRAY.
+// binding light_texture: linear RGB 0..1 over the whole shadow map; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
+// binding light_sampler: linear, clamped to the edge; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
+// binding bases: filtered bases, M/4 layers, or what the filter makes with COLORS, rgba8unorm or rgba16float.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-#import airlight::core::camera::{Camera, view_ray, perspective_ray, ndc_from_pixel, distance_from_depth}
+#import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel}
 #import airlight::core::finite::finite_or
-#import airlight::core::fourier_basis::{
-    series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored
-}
-#import airlight::core::light::Light
+#import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
+#import airlight::core::picture::picture_corner
 #import airlight::core::prefix_sum::prefix_weight
+#import airlight::core::shadow_views::{ShadowViews, view_position}
 #import airlight::scattering::march::march_shadow_map
-#import airlight::scattering::projective::{
-    ProjectiveRows, ProjectiveRay, projective_ray, reference_reach, column_from_x, x_from_column, texel_begin,
-    filtered_column, stretch_weight
-}
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin, prefix_column}
+#import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, lit_by_shadow}
+#import airlight::scattering::visibility_fourier::{
+    fourier_visibility, fourier_visibility_nearest, fourier_colors, fourier_colors_nearest
+}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
 @group(#{GROUP}) @binding(1) var<uniform> light: Light;
 @group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
-#ifdef PROJECTIVE
-@group(#{GROUP}) @binding(10) var<uniform> rows: ProjectiveRows;
-#else
 @group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
 @group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
-#endif
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
 #ifdef EPIPOLE_MARCH
+#ifdef SHADOW_ARRAY
+@group(#{GROUP}) @binding(6) var shadow_maps: texture_2d_array<f32>;
+@group(#{GROUP}) @binding(10) var<uniform> shadow_views: ShadowViews;
+#else
 @group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
+#endif
+#ifdef LIGHT_TEXTURE
+@group(#{GROUP}) @binding(11) var light_texture: texture_2d<f32>;
+@group(#{GROUP}) @binding(12) var light_sampler: sampler;
+#endif
 #endif
 @group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
 #ifndef NEAREST
@@ -70,82 +80,44 @@ const ROW_REGIONS: u32 = u32(#{REGIONS});
 const ROW_REGIONS: u32 = 1u;
 #endif
 
+#ifdef LANCZOS
+const WINDOWED: bool = true;
+#else
+const WINDOWED: bool = false;
+#endif
+
 /// Rays that cover fewer texels are marched.
 const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
+#ifdef COLORS
+/// Mean of visibility times fall-off of a ray for each colour, read at `column` of its row, in texels.
+fn filtered_colors(ray: RowRay, column: f32) -> vec3<f32> {
+    let size = vec2<f32>(textureDimensions(bases).xy);
+#ifdef NEAREST
+    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
+    return fourier_colors_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
+#else
+    let place = vec2<f32>(column, ray.row + 0.5) / size;
+    return fourier_colors(bases, bases_sampler, place, ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
+#endif
+}
+#else
 /// The filtered series of a ray, read at `column` of its row, in texels.
 fn filtered_series(ray: RowRay, column: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(bases).xy);
 #ifdef NEAREST
-#ifdef PROJECTIVE
-    let row = floor(ray.row + 0.5);
-#else
-    let row = f32(nearest_row(frame, ray.row));
-#endif
-    let place = vec2<u32>(clamp(vec2<f32>(column, row), vec2<f32>(0.0), size - 1.0));
+    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
+    return fourier_visibility_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, WINDOWED);
 #else
     let place = vec2<f32>(column, ray.row + 0.5) / size;
+    return fourier_visibility(bases, bases_sampler, place, ray.depth, LAYERS, WINDOWED);
 #endif
-    var series = series_first(ray.depth);
-#ifdef LANCZOS
-    var window = series_first(1.0 / f32(4u * LAYERS));
-#endif
-    var visibility = 0.5;
-    for (var layer = 0u; layer < LAYERS; layer++) {
-#ifdef NEAREST
-        let filtered = basis_from_stored(textureLoad(bases, place, layer, 0));
-#else
-        let filtered = basis_from_stored(textureSampleLevel(bases, bases_sampler, place, layer, 0.0));
-#endif
-#ifdef LANCZOS
-        visibility += dot(coefficients_lanczos(series, window, layer, 4u * LAYERS), filtered);
-        window = series_next(window);
-#else
-        visibility += dot(coefficients(series, layer), filtered);
-#endif
-        series = series_next(series);
-    }
-    return visibility;
 }
+#endif
 
-#ifdef PROJECTIVE
-/// Mean visibility of a view ray between its ends. `row_ray`: the same in columns; `extinction` in 1/m, 0 for plain means.
-fn projective_visibility(along: ProjectiveRay, row_ray: RowRay, extinction: f32) -> f32 {
-    let size = textureDimensions(bases);
-    let width = f32(size.x);
-    let reach = reference_reach(rows, f32(size.y), row_ray.row);
-    let first = region_of(row_ray.begin, size.x, ROW_REGIONS);
-    let last = max(region_of(row_ray.end, size.x, ROW_REGIONS), first);
-    var sum = 0.0;
-    var total = 0.0;
-    for (var region = first; region <= last; region++) {
-        let column = region_begin(region, size.x, ROW_REGIONS);
-        let start = texel_begin(rows, width, column);
-        let from_x = max(along.begin, start);
-        var to_x = max(along.end, from_x);
-        if region < last {
-            to_x = max(texel_begin(rows, width, region_begin(region + 1u, size.x, ROW_REGIONS)), from_x);
-        }
-        var mean = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, to_x));
-#ifdef NEAR_PLANE
-        if from_x > start {
-            let whole = stretch_weight(extinction, (to_x - start) * reach);
-            let before = stretch_weight(extinction, (from_x - start) * reach);
-            let skipped = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, from_x));
-            mean = clamp((mean * whole - skipped * before) / max(whole - before, 1e-6 * whole + 1e-30), 0.0, 1.0);
-        }
-#endif
-        let begins = (from_x - along.begin) * along.reach;
-        let weight = exp(-extinction * begins) * stretch_weight(extinction, (to_x - from_x) * along.reach);
-        sum += mean * weight;
-        total += weight;
-    }
-    // A ray of no length has no mean and scatters nothing.
-    return select(0.0, sum / max(total, 1e-37), total > 1e-30);
-}
-#else
+#ifndef COLORS
 /// Mean visibility of a ray over its stretch of the row. `reference_step`: optical depth of a texel by which the bases
 /// are weighted; `optical_step`: that of the ray itself, by which regions are put together.
 fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
@@ -176,87 +148,104 @@ fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
 }
 #endif
 
+#ifdef PER_POINT
+/// Visibility, 0 or 1, times fall-off and light texture at a point in the world, metres.
+fn lit_at(point: vec3<f32>) -> vec3<f32> {
+#ifdef SHADOW_ARRAY
+    let place = view_position(shadow_views, vec2<f32>(textureDimensions(shadow_maps)), point);
+    let visibility = lit_by_shadow(shadow_in_view(shadow_maps, place, light.far_depth), light.far_depth);
+#else
+    let visibility = lit_by_shadow(shadow_in_map(shadow_map, light, point), light.far_depth);
+#endif
+    let lit = vec3<f32>(visibility * angular_falloff(light, direction_to_light(light, point)));
+#ifdef LIGHT_TEXTURE
+    return lit * light_texture_color(light, light_texture, light_sampler, point);
+#else
+    return lit;
+#endif
+}
+
+/// Mean of `lit_at` over a view ray between two distances in metres, by equal steps, weighted by transmittance.
+fn marched_light(
+    origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
+) -> vec3<f32> {
+    let stride = (span.y - span.x) / f32(max(steps, 1u));
+    var sum = vec3<f32>(0.0);
+    var total = 0.0;
+    for (var done = 0u; done < steps; done++) {
+        let along = stride * (f32(done) + offset);
+        let weight = exp(-min(extinction * stride * f32(done), 80.0));
+        sum += weight * lit_at(origin + (span.x + along) * direction);
+        total += weight;
+    }
+    return sum / max(total, 1.0);
+}
+#endif
+
 /// Radiance, and mean visibility in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
-#ifdef AVERAGE
-    let extinction = 0.0;
-#else
-    let extinction = medium.extinction;
-#endif
-    let width = f32(textureDimensions(bases).x);
-#ifdef PROJECTIVE
-    let ray = view_ray(camera, ndc);
-    let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
-    let cosine = dot(ray.direction, light.direction);
-    var along = projective_ray(rows, f32(textureDimensions(bases).y), ray.origin, ray.direction, distance);
-#ifdef NEAR_PLANE
-    // An orthographic ray begins there anyway.
-    let near = distance_from_depth(camera, ray, ndc, camera.near_depth, distance);
-    along.begin += near / along.reach;
-#else
-    let near = 0.0;
-#endif
-    var row_ray = RowRay(
-        along.row, column_from_x(rows, width, along.begin), column_from_x(rows, width, along.end), along.depth
-    );
-#ifdef NEAR_PLANE
-    // Short stretches are widened towards the eye, as those of slices are.
-    let widened = stretch_begin(row_ray.begin, row_ray.end);
-    if widened < row_ray.begin {
-        row_ray.begin = widened;
-        along.begin = min(along.begin, x_from_column(rows, width, widened));
-    }
-#endif
-    let texels = row_ray.end - row_ray.begin;
-    var visibility = projective_visibility(along, row_ray, extinction);
-#else
     let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
-    let distance = ray.distance;
-    let cosine = ray.cosine;
     // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
+    let width = f32(textureDimensions(bases).x);
     let texels = clamp(width * ray.distance * ray.sine / slice.radius_max, 0.0, width);
     var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(slice, ray));
 #ifdef DEPTH_WARP
     row_ray.depth = warped_depth(row_ray.depth);
 #endif
 #ifdef NEAR_PLANE
-    let near = epipolar_ray(frame, ndc, camera.near_depth, distance).distance;
+    let near = epipolar_ray(frame, ndc, camera.near_depth, ray.distance).distance;
     row_ray.begin = stretch_begin(width * near * ray.sine / slice.radius_max, texels);
 #else
     let near = 0.0;
 #endif
+#ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
     // Optical depth of a texel of a ray at right angles to the light.
     let across = extinction * slice.radius_max / width;
-#ifdef REGIONS
+#ifdef COLORS
+    var visibility = filtered_colors(row_ray, prefix_column(texels, 0.0));
+#else ifdef REGIONS
     var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
 #else ifdef NEAR_PLANE
     var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
 #else
     var visibility = filtered_series(row_ray, prefix_column(texels, 0.0));
 #endif
-#endif
+#ifndef COLORS
     visibility = clamp(visibility, 0.0, 1.0);
+#endif
 
 #ifdef EPIPOLE_MARCH
     let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
     let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
-#ifdef PROJECTIVE
-    let march_ray = ray;
+    let direction = perspective_ray(camera, ndc).direction;
+#ifdef PER_POINT
+    let marched = marched_light(camera.eye, direction, vec2<f32>(near, ray.distance), extinction, steps, 0.5);
 #else
-    let march_ray = perspective_ray(camera, ndc);
+    let marched = vec3<f32>(march_shadow_map(
+        shadow_map, light, camera.eye + near * direction, direction, ray.distance - near, extinction, steps, 0.5
+    ));
 #endif
-    let march_from = march_ray.origin + near * march_ray.direction;
-    let marched = march_shadow_map(
-        shadow_map, light, march_from, march_ray.direction, distance - near, extinction, steps, 0.5
-    );
+#ifdef COLORS
     visibility = mix(visibility, marched, near_epipole);
+#else
+    visibility = mix(visibility, marched.x, near_epipole);
+#endif
 #endif
 
-    let radiance = in_scattered(medium, light.radiance, cosine, distance - near, visibility);
+#ifdef COLORS
+    let radiance = visibility * in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, 1.0);
+    return vec4<f32>(min(radiance, vec3<f32>(65504.0)), dot(visibility, vec3<f32>(1.0 / 3.0)));
+#else
+    let radiance = in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, visibility);
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
+#endif
 }
 
 @compute @workgroup_size(16, 8)
@@ -266,10 +255,9 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-/// One triangle over the whole picture.
 @vertex
 fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+    return picture_corner(index);
 }
 
 @fragment

@@ -5,37 +5,62 @@
 // note: Blockers are moved away from the light by about half the width of the series' edge (surface_bias), which
 // note: the thesis does not do: otherwise lit surfaces shade the ends of their own rays.
 // note: Depths outside 0..1 are clamped, non-finite ones count as unblocked.
+// note: A light's angular fall-off and texture belong to its light rays, that is to columns: with COLORS each column
+// note: enters the means times its fall-off, and so does the constant 1/2 of the series, whose mean is one layer more.
 // definition BASES: number M of bases, a multiple of 4 from 4 to 128.
 // definition BASES_PER_THREAD: bases a thread filters, a multiple of 4.
 // definition REGIONS: regions of equal width that a row is filtered in, each by itself and by a thread of its own.
 // definition DIRECT: sines and cosines of every basis instead of the recurrence by rotation.
-// definition PROJECTIVE: projective rows, whose texels differ in length, instead of epipolar slices.
 // definition AVERAGE: plain means (average visibility) instead of means weighted by transmittance.
+// definition LOCAL: rows around a spot or point light. Not with REGIONS, unless with AVERAGE.
+// definition PROJECTIVE: projective rows, whose texels differ in length, instead of epipolar slices. Not with LOCAL or COLORS.
+// definition COLORS: 1 for the fall-off of a spot, 3 with LIGHT_TEXTURE; that many times M bases, and one layer more.
+// definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
 // definition RGBA16FLOAT: store as rgba16float instead of rgba8unorm.
-// binding medium: the medium, for its extinction; absent with AVERAGE.
-// binding slices: bounds of the slices, rgba32float; absent with AVERAGE and with PROJECTIVE.
+// binding medium: the medium; absent with AVERAGE.
+// binding slices: bounds of the slices, rgba32float; absent with PROJECTIVE, and with AVERAGE unless with COLORS.
 // binding rows: the projective rows; with PROJECTIVE only.
 // binding rectified: the rectified map, depth 0..1.
-// binding bases: out, M/4 layers of the filtered bases; -1..1 is stored as 0..1.
+// binding bases: out, M/4 layers of the filtered bases; -1..1 is stored as 0..1. With COLORS the layers of each colour, and a layer of the mean fall-off, 0..1.
+// binding light: the light; with LOCAL or COLORS only.
+// binding frame: the frame of the slices; with LOCAL or COLORS only.
+// binding light_texture: linear RGB 0..1 over the whole shadow map, any float format that filters; with LIGHT_TEXTURE only.
+// binding light_sampler: linear, clamped to the edge; with LIGHT_TEXTURE only.
 
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis, surface_bias}
+#import airlight::core::light::{Light, angular_falloff, light_texture_color}
 #import airlight::core::prefix_sum::{RowWeights, row_weights, row_weights_next, running_mean}
+#import airlight::scattering::local_light::{
+    local_slice_from_texel, light_angle_of_column, light_ray_direction, column_weight, distance_to_light
+}
 #import airlight::scattering::projective::{
     ProjectiveRows, reference_reach, texel_begin, texel_end, stretch_weight
 }
-#import airlight::scattering::rectify::slice_from_texel
+#import airlight::scattering::rectify::{Frame, slice_from_texel, row_azimuth, azimuth_direction}
 #import airlight::scattering::rows::region_begin
 #import airlight::scattering::single_scatter::Medium
 
-#ifndef AVERAGE
-@group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
-#ifndef PROJECTIVE
+#ifdef PROJECTIVE
+@group(#{GROUP}) @binding(8) var<uniform> rows: ProjectiveRows;
+#else ifndef AVERAGE
+@group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
+#else ifdef COLORS
 @group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
 #endif
+#ifndef AVERAGE
+@group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
 #endif
-#ifdef PROJECTIVE
-@group(#{GROUP}) @binding(4) var<uniform> rows: ProjectiveRows;
+#ifdef COLORS
+@group(#{GROUP}) @binding(4) var<uniform> light: Light;
+@group(#{GROUP}) @binding(5) var<uniform> frame: Frame;
+#ifdef LIGHT_TEXTURE
+@group(#{GROUP}) @binding(6) var light_texture: texture_2d<f32>;
+@group(#{GROUP}) @binding(7) var light_sampler: sampler;
+#endif
+#else ifdef LOCAL
+@group(#{GROUP}) @binding(4) var<uniform> light: Light;
+@group(#{GROUP}) @binding(5) var<uniform> frame: Frame;
 #endif
 @group(#{GROUP}) @binding(2) var rectified: texture_2d<f32>;
 #ifdef RGBA16FLOAT
@@ -51,6 +76,30 @@ const ROW_REGIONS: u32 = u32(#{REGIONS});
 const ROW_REGIONS: u32 = 1u;
 #endif
 const PER_THREAD: u32 = u32(#{BASES_PER_THREAD}) / 4u;
+#ifdef COLORS
+const COLOR_COUNT: u32 = u32(#{COLORS});
+
+/// Fall-off and texture of the light ray of `row` at `unit`, 0..1 along the row, for each colour 0..1.
+fn falloff_of_column(row: u32, unit: f32) -> vec3<f32> {
+    let texel = textureLoad(slices, vec2<u32>(row, 0u), 0);
+    let radial = azimuth_direction(frame, row_azimuth(frame, f32(row)));
+#ifdef LOCAL
+    let direction = light_ray_direction(frame, radial, light_angle_of_column(local_slice_from_texel(texel), unit));
+    let falloff = vec3<f32>(angular_falloff(light, -direction));
+    let point = light.position + direction;
+#else
+    let falloff = vec3<f32>(1.0);
+    let point = frame.eye + unit * slice_from_texel(texel).radius_max * radial;
+#endif
+#ifdef LIGHT_TEXTURE
+    return falloff * light_texture_color(light, light_texture, light_sampler, point);
+#else
+    return falloff;
+#endif
+}
+#else
+const COLOR_COUNT: u32 = 1u;
+#endif
 
 @compute @workgroup_size(32)
 fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -60,7 +109,7 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS || id.z >= ROW_REGIONS {
         return;
     }
-    let column_begin = region_begin(id.z, size.x, ROW_REGIONS);
+    let begin = region_begin(id.z, size.x, ROW_REGIONS);
 #ifdef PROJECTIVE
 #ifdef AVERAGE
     let extinction = 0.0;
@@ -70,17 +119,24 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     let reach = reference_reach(rows, f32(size.y), f32(row));
     // Transmittance from the start of the region.
     var through = 1.0;
-    var edge = texel_begin(rows, f32(size.x), column_begin);
+    var edge = texel_begin(rows, f32(size.x), begin);
     var weights = RowWeights(0.0, 0.0, 1.0);
 #else ifdef AVERAGE
     var weights = row_weights(0.0);
+#else ifdef LOCAL
+    let slice = local_slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
+    let away = distance_to_light(frame, light.position);
+    var weights = RowWeights(0.0, 0.0, 1.0);
 #else
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     var weights = row_weights(medium.extinction * slice.radius_max / (f32(size.x) * slice.reference));
 #endif
-    var means = array<vec4<f32>, PER_THREAD>();
+    var means = array<vec4<f32>, PER_THREAD * COLOR_COUNT>();
+#ifdef COLORS
+    var mean_falloff = vec4<f32>(0.0);
+#endif
     let end = region_begin(id.z + 1u, size.x, ROW_REGIONS);
-    for (var column = column_begin; column < end; column++) {
+    for (var column = begin; column < end; column++) {
 #ifdef PROJECTIVE
         let next = texel_end(rows, f32(size.x), column);
         let metres = (next - edge) * reach;
@@ -91,19 +147,47 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
 #endif
         let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
         let blocker = min(depth + surface_bias(4u * LAYERS), 1.0);
+#ifdef LOCAL
+#ifndef AVERAGE
+        let at_light = light_angle_of_column(slice, (f32(column) + 0.5) / f32(size.x));
+        let weight = column_weight(slice, away, at_light, medium);
+        weights = RowWeights(weight, weights.total + weight, 1.0);
+#endif
+#endif
+#ifdef COLORS
+        let falloff = falloff_of_column(row, (f32(column) + 0.5) / f32(size.x));
+        mean_falloff = running_mean(mean_falloff, vec4<f32>(falloff, 1.0), weights);
+        if first == 0u {
+            textureStore(bases, vec2<u32>(column, row), COLOR_COUNT * LAYERS, mean_falloff);
+        }
+#endif
         var series = series_at(blocker, first);
         for (var group = 0u; group < PER_THREAD; group++) {
+#ifdef COLORS
+            for (var color = 0u; color < COLOR_COUNT; color++) {
+                let at = group * COLOR_COUNT + color;
+                means[at] = running_mean(means[at], series.basis * falloff[color], weights);
+                if first + group < LAYERS {
+                    let layer = color * LAYERS + first + group;
+                    textureStore(bases, vec2<u32>(column, row), layer, stored_from_basis(means[at]));
+                }
+            }
+#else
             means[group] = running_mean(means[group], series.basis, weights);
             if first + group < LAYERS {
                 textureStore(bases, vec2<u32>(column, row), first + group, stored_from_basis(means[group]));
             }
+#endif
 #ifdef DIRECT
             series = series_at(blocker, first + group + 1u);
 #else
             series = series_next(series);
 #endif
         }
-#ifndef PROJECTIVE
+#ifdef PROJECTIVE
+#else ifdef AVERAGE
+        weights = row_weights_next(weights);
+#else ifndef LOCAL
         weights = row_weights_next(weights);
 #endif
     }

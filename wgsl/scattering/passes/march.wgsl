@@ -21,6 +21,7 @@
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
 #import airlight::core::light::Light
+#import airlight::core::picture::picture_corner
 #import airlight::scattering::march::{march_row, march_row_steps, march_shadow_map}
 #import airlight::scattering::projective::{ProjectiveRows, projective_ray, march_projective_row}
 #import airlight::scattering::rectify::{
@@ -117,10 +118,9 @@ fn march(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-/// One triangle over the whole picture.
 @vertex
 fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+    return picture_corner(index);
 }
 
 @fragment
