@@ -11,8 +11,9 @@ pub fn kind_text(kind: &BindingKind) -> String {
         BindingKind::Storage { writable, ty, .. } => {
             format!("storage {ty}, {}", if *writable { "read and written" } else { "read" })
         }
-        BindingKind::Texture { dimension, sample, filtered, .. } => {
-            format!("{dimension} texture of {sample}{}", if *filtered { ", filtered" } else { "" })
+        BindingKind::Texture { dimension, sample, filtered, multisampled } => {
+            let several = if *multisampled { "multisampled " } else { "" };
+            format!("{several}{dimension} texture of {sample}{}", if *filtered { ", filtered" } else { "" })
         }
         BindingKind::StorageTexture { dimension, format, .. } => {
             format!("{dimension} storage texture {}", format_name(*format))
@@ -113,7 +114,7 @@ pub(crate) fn mismatch(kind: &BindingKind, resource: Resource<'_>) -> Option<Str
             }
             (given < *min_size).then(|| format!("a buffer of {given} bytes"))
         }
-        (BindingKind::Texture { dimension, sample, filtered, .. }, Resource::Texture(texture)) => {
+        (BindingKind::Texture { dimension, sample, filtered, multisampled }, Resource::Texture(texture)) => {
             let format = texture.raw.format();
             let fits = match format.sample_type(Some(wgpu::TextureAspect::All), None) {
                 Some(wgpu::TextureSampleType::Float { filterable }) => {
@@ -127,6 +128,7 @@ pub(crate) fn mismatch(kind: &BindingKind, resource: Resource<'_>) -> Option<Str
                 None => false,
             };
             let whole = texture.dimension == view_dimension(*dimension)
+                && *multisampled == (texture.raw.sample_count() > 1)
                 && texture.raw.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING);
             (!(fits && whole)).then(|| described(texture))
         }
@@ -146,5 +148,12 @@ pub(crate) fn mismatch(kind: &BindingKind, resource: Resource<'_>) -> Option<Str
 }
 
 fn described(texture: &crate::resource::Texture) -> String {
-    format!("a {:?} texture of {:?} with {:?}", texture.dimension, texture.raw.format(), texture.raw.usage())
+    let samples = texture.raw.sample_count();
+    let several = if samples > 1 { format!(", {samples} samples a pixel") } else { String::new() };
+    format!(
+        "a {:?} texture of {:?} with {:?}{several}",
+        texture.dimension,
+        texture.raw.format(),
+        texture.raw.usage()
+    )
 }

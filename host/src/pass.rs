@@ -118,6 +118,8 @@ pub struct RenderStages<'a> {
     pub target: Option<wgpu::TextureFormat>,
     /// Depth test and write.
     pub depth: Option<(wgpu::CompareFunction, bool)>,
+    /// Samples a pixel, 1 or 4.
+    pub samples: u32,
 }
 
 /// A pass of the library with its pipelines and the layout of its resources.
@@ -222,7 +224,7 @@ impl Pass {
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),
-            multisample: wgpu::MultisampleState::default(),
+            multisample: wgpu::MultisampleState { count: stages.samples, ..Default::default() },
             fragment: stages.fragment.map(|fragment| wgpu::FragmentState {
                 module: &module,
                 entry_point: Some(fragment),
@@ -254,6 +256,7 @@ impl Pass {
             vertices: None,
             target: Some(format),
             depth: None,
+            samples: 1,
         };
         Self::render(gpu, &shaders.compose_with(pass, definitions)?, &stages)
     }

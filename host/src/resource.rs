@@ -153,12 +153,52 @@ impl Texture {
         )
     }
 
+    /// An array of render targets that later passes read, of `size[2]` layers, also where that is one.
+    pub fn target_array(gpu: &Gpu, size: [u32; 3], format: wgpu::TextureFormat) -> Self {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        Self::array(gpu, size, format, usage)
+    }
+
+    /// A render target of `samples` samples a pixel, 1 or 4, that later passes read. With 4 it cannot be read back.
+    pub fn multisampled(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> Self {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        Self::create_sampled(
+            gpu,
+            [size[0], size[1], 1],
+            format,
+            usage,
+            wgpu::TextureViewDimension::D2,
+            samples,
+        )
+    }
+
+    /// A view of one layer, to draw into.
+    pub fn layer(&self, layer: u32) -> wgpu::TextureView {
+        self.raw.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: layer,
+            array_layer_count: Some(1),
+            ..Default::default()
+        })
+    }
+
     fn create(
         gpu: &Gpu,
         size: [u32; 3],
         format: wgpu::TextureFormat,
         usage: wgpu::TextureUsages,
         dimension: wgpu::TextureViewDimension,
+    ) -> Self {
+        Self::create_sampled(gpu, size, format, usage, dimension, 1)
+    }
+
+    fn create_sampled(
+        gpu: &Gpu,
+        size: [u32; 3],
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+        dimension: wgpu::TextureViewDimension,
+        samples: u32,
     ) -> Self {
         let copies = if format.is_depth_stencil_format() {
             wgpu::TextureUsages::COPY_SRC
@@ -169,7 +209,7 @@ impl Texture {
             label: None,
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: size[2] },
             mip_level_count: 1,
-            sample_count: 1,
+            sample_count: samples,
             dimension: wgpu::TextureDimension::D2,
             format,
             usage: usage | copies,
@@ -228,6 +268,9 @@ impl Texture {
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<f32>, GpuError> {
         let format = self.raw.format();
         let [width, height, layers] = self.size();
+        if self.raw.sample_count() > 1 {
+            return Err(GpuError::Reading("a multisampled texture cannot be read".to_owned()));
+        }
         let texel = format.block_copy_size(Some(wgpu::TextureAspect::All)).or(format.block_copy_size(None));
         let texel = texel.ok_or_else(|| GpuError::Reading(format!("{format:?} cannot be read")))?;
         let tight = width * texel;
@@ -311,6 +354,18 @@ impl Sampler {
             gpu,
             &wgpu::SamplerDescriptor {
                 address_mode_v: wgpu::AddressMode::Repeat,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            },
+        )
+    }
+
+    /// Linear, clamped to the edge.
+    pub fn linear(gpu: &Gpu) -> Self {
+        Self::create(
+            gpu,
+            &wgpu::SamplerDescriptor {
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 ..Default::default()

@@ -3,7 +3,7 @@
 //! through encase, and its bytes are looked for at the offset that reflection reports.
 #![allow(clippy::unwrap_used)]
 
-use airlight::core::{Camera, Light, Sky, TonemapParameters};
+use airlight::core::{Camera, Light, MAX_VIEWS, ShadowViews, Sky, TonemapParameters};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
@@ -102,6 +102,20 @@ impl Sentinel for Mat4 {
     }
 }
 
+impl Sentinel for [Mat4; MAX_VIEWS] {
+    const TYPE: &'static str = "array<mat4x4<f32>, 6>";
+    fn zero() -> Self {
+        [Mat4::ZERO; MAX_VIEWS]
+    }
+    fn sentinel() -> Self {
+        std::array::from_fn(|view| Mat4::sentinel() * (view as f32 + 1.0))
+    }
+    fn words() -> Vec<(u32, u32)> {
+        let of = |view: u32| (0..16).map(move |i| (64 * view + 4 * i, ((i + 1) * (view + 1)) as f32));
+        (0..MAX_VIEWS as u32).flat_map(of).map(|(at, value)| (at, value.to_bits())).collect()
+    }
+}
+
 /// Name, WGSL type, words of its sentinel, and the whole struct's bytes with only this field set.
 type Field = (&'static str, &'static str, Vec<(u32, u32)>, Vec<u8>);
 
@@ -141,6 +155,10 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         clip_from_world: Mat4, world_from_clip: Mat4, direction: Vec3, far_depth: f32,
         radiance: Vec3, kind: u32, position: Vec3, radius: f32, spot_cosines: Vec2,
         reserved_a: f32, reserved_b: f32,
+    });
+    twin!(twins: ShadowViews {
+        clip_from_world: [Mat4; MAX_VIEWS], world_from_clip: [Mat4; MAX_VIEWS], count: u32,
+        reserved_a: u32, reserved_b: u32, reserved_c: u32,
     });
     twin!(twins: Sky {
         zenith: Vec3, reserved_a: f32, horizon: Vec3, reserved_b: f32, ground: Vec3, reserved_c: f32,

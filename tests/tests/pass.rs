@@ -166,6 +166,7 @@ fn samplers_are_told_apart() {
         }),
         target: Some(Rgba16Float),
         depth: None,
+        samples: 1,
     };
     let pass = Pass::render(gpu(), &composed, &stages).unwrap();
     let uniform = Buffer::storage(gpu(), 160);

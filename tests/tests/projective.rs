@@ -7,14 +7,16 @@
 #[path = "support/gpu.rs"]
 mod gpu;
 
-use airlight::core::{Camera, Light, MeshBuffers, Pictures, Sky, direction_from_angles};
+use airlight::core::{
+    Camera, DepthRange, Light, MeshBuffers, PerspectiveView, Pictures, Sky, direction_from_angles,
+};
 use airlight::data::{Mesh, plane};
 use airlight::scattering::{
     Along, BasisFormat, Choice, Inputs, March, Medium, OBLIQUENESS_LIMIT, Projective, ProjectiveError,
     ProjectiveMap, ProjectivePrefiltered, ProjectiveRaster, ProjectiveRows, Settings, SettingsError, Start,
     Weighting, choose, projective_rows,
 };
-use airlight::{Buffer, Texture, scenes};
+use airlight::{Buffer, Lighting, Texture, scenes};
 use airlight_tests::error;
 use airlight_tests::linear;
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView};
@@ -483,7 +485,16 @@ impl Stage {
     fn inputs(&self) -> Inputs<'_> {
         let [camera, light, medium] = &self.buffers;
         let Pictures { depth, shadow_map, .. } = &self.pictures;
-        Inputs { camera, light, medium, depth, shadow_map }
+        Inputs {
+            camera,
+            light,
+            medium,
+            depth,
+            shadow_map,
+            shadow_views: None,
+            shadow_maps: None,
+            light_texture: None,
+        }
     }
 
     fn projective(&self, splits: u32) -> Projective {
@@ -579,15 +590,23 @@ fn scattered(texture: &Texture) -> Scattered {
     }
 }
 
+/// The direction towards the light of a scene of the gallery.
+fn towards(scene: &scenes::Scene) -> Vec3 {
+    match scene.light {
+        Lighting::Directional { towards, .. } => towards,
+        _ => panic!("{} has a light at a point", scene.name),
+    }
+}
+
 /// A scene of the gallery with the light beside the picture.
 fn gallery(name: &str) -> Stage {
     let scene = scenes::scene(name).unwrap().unwrap();
     let light = match name {
         "foliage" => direction_from_angles(105.0, 48.0),
         "torus" => direction_from_angles(75.0, 40.0),
-        _ => scene.light,
+        _ => towards(&scene),
     };
-    let camera = gpu::reference_camera(&scene.setting().view, PICTURE);
+    let camera = gpu::reference_camera(&scene.view.perspective().unwrap(), PICTURE);
     Stage::new(&scene.mesh, camera, light, scene.medium, PICTURE, 1024)
 }
 
@@ -689,13 +708,13 @@ fn blockers_outside_of_the_frustum_cast_shadows() {
     // A plate high above the picture, and one far below it that casts none.
     let mut mesh = plane(Vec2::splat(3.0), 1).transformed(Mat4::from_translation(Vec3::new(0.0, 40.0, 0.0)));
     mesh.append(&plane(Vec2::splat(60.0), 1).transformed(Mat4::from_translation(Vec3::Y * -40.0)));
-    let view = airlight::core::PerspectiveView {
+    let view = PerspectiveView {
         eye: Vec3::new(0.0, 1.0, 8.0),
         target: Vec3::new(0.0, 1.0, 0.0),
         field_of_view: 40.0,
         near: 0.1,
         far: 20.0,
-        depth: airlight::core::DepthRange::Forward,
+        depth: DepthRange::Forward,
     };
     let picture = [96, 64];
     let medium = Medium::new(0.02, Vec3::ONE, 0.0, 20.0).unwrap();
@@ -797,7 +816,7 @@ fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
     let (mut compared, mut failures) = ([0; 2], Vec::new());
     for name in ["foliage", "terrain", "torus", "plane"] {
         let scene = scenes::scene(name).unwrap().unwrap();
-        let camera = gpu::reference_camera(&scene.setting().view, SMALL);
+        let camera = gpu::reference_camera(&scene.view.perspective().unwrap(), SMALL);
         for turn in [1.0, 0.5, 0.3, 0.2, 0.15, 0.1, 0.03, 0.01] {
             let light = light_beside_corner(&camera, turn);
             let stage = Stage::new(&scene.mesh, camera, light, scene.medium, SMALL, 1024);
@@ -853,19 +872,19 @@ fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
 fn regions_and_near_planes_keep_the_figures() {
     let _turn = gpu::turn();
     let scene = scenes::scene("terrain").unwrap().unwrap();
-    let mut view = scene.setting().view;
+    let mut view = scene.view.perspective().unwrap();
     // A near plane that matters, and air in which the reference ray of a row is far from some of its rays.
     view.near = 6.0;
     let near = gpu::reference_camera(&view, PICTURE);
     let thick = Medium { extinction: 0.06, ..scene.medium };
-    let eye = gpu::reference_camera(&scene.setting().view, PICTURE);
+    let eye = gpu::reference_camera(&scene.view.perspective().unwrap(), PICTURE);
     let cases = [
         ("from the eye", eye, scene.medium, reference::Start::Eye, [0.005, 0.005, 0.005]),
         ("from the near plane", near, scene.medium, reference::Start::NearPlane, [0.03, 0.01, 0.01]),
         ("from the near plane in thick air", near, thick, reference::Start::NearPlane, [0.08, 0.03, 0.01]),
     ];
     for (name, camera, medium, start, budgets) in cases {
-        let stage = Stage::new(&scene.mesh, camera, scene.light, medium, PICTURE, 1024);
+        let stage = Stage::new(&scene.mesh, camera, towards(&scene), medium, PICTURE, 1024);
         let mut before = f64::INFINITY;
         for (regions, budget) in [1, 3, 8].into_iter().zip(budgets) {
             let settings = Settings {
@@ -894,13 +913,13 @@ fn regions_and_near_planes_keep_the_figures() {
 fn a_row_lit_up_to_a_column_has_its_closed_form() {
     let _turn = gpu::turn();
     // A narrow view, so that all rays of a row are nearly as long as its reference ray.
-    let view = airlight::core::PerspectiveView {
+    let view = PerspectiveView {
         eye: Vec3::new(1.0, 2.0, -3.0),
         target: Vec3::new(2.0, 2.2, -9.0),
         field_of_view: 12.0,
         near: 0.1,
         far: 100.0,
-        depth: airlight::core::DepthRange::Reversed,
+        depth: DepthRange::Reversed,
     };
     const SIZE: [u32; 2] = [516, 16];
     let mesh = plane(Vec2::splat(9.0), 1);
@@ -980,8 +999,16 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let light =
         Buffer::uniform(gpu(), &gpu::host_light(linear::Vec3::new(0.0, 1.0, 0.0), matrix, 1.0, Vec3::ONE));
     let medium = Buffer::uniform(gpu(), &Medium::new(0.1, Vec3::ONE, 0.0, 10.0).unwrap());
-    let inputs =
-        Inputs { camera: &camera, light: &light, medium: &medium, depth: &depth, shadow_map: &shadow_map };
+    let inputs = Inputs {
+        camera: &camera,
+        light: &light,
+        medium: &medium,
+        depth: &depth,
+        shadow_map: &shadow_map,
+        shadow_views: None,
+        shadow_maps: None,
+        light_texture: None,
+    };
     let base = Settings {
         bases: 8,
         format: BasisFormat::Rgba16Float,

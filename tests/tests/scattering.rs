@@ -10,7 +10,7 @@ mod gpu;
 use airlight::scattering::{
     Along, BasisFormat, Frame, Inputs, March, Medium, Prefiltered, Rectification, Settings, Weighting,
 };
-use airlight::{Buffer, Setting, Stage, Texture, scenes};
+use airlight::{Buffer, Stage, Texture, scenes};
 use airlight_tests::error;
 use airlight_tests::linear;
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, View};
@@ -35,7 +35,7 @@ struct Case {
 impl Case {
     fn new(name: &str, picture: [u32; 2], map: [u32; 2]) -> Self {
         let scene = scenes::scene(name).unwrap().unwrap();
-        let Setting { view, .. } = scene.setting();
+        let view = scene.view.perspective().unwrap();
         let stage = Stage::new(gpu(), gpu::raster(), &scene.setting(), picture, [1024, 1024]).unwrap();
         let map = rectified(&stage.inputs(), map);
         let exact = gpu::exact_picture(&stage, &view, &map, 1);
@@ -117,6 +117,9 @@ fn frame_and_slices_are_those_of_the_reference() {
         medium: &Buffer::uniform(gpu(), &medium),
         depth: &depth,
         shadow_map: &shadow,
+        shadow_views: None,
+        shadow_maps: None,
+        light_texture: None,
     };
     let bound = map.bind(gpu(), &inputs).unwrap();
     let (mut slices, mut skipped, mut circles, mut borders) = (0, 0, 0, 0);
@@ -647,8 +650,16 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let medium = Buffer::uniform(gpu(), &first.medium);
     let depth = gpu::texture(PICTURE, R32Float, &[1.0; PIXELS]);
     let shadow_map = gpu::texture(SHADOW, R32Float, &[1.0; 64]);
-    let inputs =
-        Inputs { camera: &camera, light: &light, medium: &medium, depth: &depth, shadow_map: &shadow_map };
+    let inputs = Inputs {
+        camera: &camera,
+        light: &light,
+        medium: &medium,
+        depth: &depth,
+        shadow_map: &shadow_map,
+        shadow_views: None,
+        shadow_maps: None,
+        light_texture: None,
+    };
     let defaults = Settings { bases: 8, map: MAP, format: BasisFormat::Rgba16Float, ..Settings::default() };
     let plain = Settings { window: false, epipole_march: false, weighting: Weighting::Average, ..defaults };
     // Cases take turns: with everything and along rows, plain and through the shadow map.

@@ -58,6 +58,15 @@ fn perspective_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     return Ray(camera.eye, normalize(far.xyz - camera.eye * far.w));
 }
 
+/// Vector from `point`, metres in the world, TOWARDS the viewer, of any length: to the eye, or against the parallel
+/// rays of an orthographic camera.
+fn towards_viewer(camera: Camera, point: vec3<f32>) -> vec3<f32> {
+    if camera.projection == ORTHOGRAPHIC {
+        return camera.world_from_clip[2].xyz * (camera.near_depth - camera.far_depth);
+    }
+    return camera.eye - point;
+}
+
 /// Distance in metres along `ray`, the view ray through `ndc`, of the surface with the depth-buffer
 /// value `depth`; at most `limit`, which also stands for points at infinity.
 fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, limit: f32) -> f32 {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::core::light
-// summary: A light and the clip space of its standard shadow map.
-// source: thesis 4.2.1.
+// summary: A light, its fall-off and texture, and the clip space of its standard shadow map.
+// source: thesis 4.2.1; a point source seen through a cone and softened by its radius.
+// note: The matrix of a directional light is affine, that of a spot a perspective projection from its position.
+
+#import airlight::core::finite::finite_or_rgb
 
 /// A light at infinity: all light rays are parallel.
 const DIRECTIONAL: u32 = 0u;
@@ -35,14 +38,84 @@ struct Light {
     reserved_b: f32,
 }
 
-/// Position in texels of the shadow map, and depth, of a point in the world. `size`: of the map in texels.
-fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let clip = light.clip_from_world * vec4<f32>(point, 1.0);
-    return vec3<f32>((clip.xy * vec2<f32>(0.5, -0.5) + 0.5) * size, clip.z);
+/// Unit vector from `point`, metres in the world, TOWARDS the light; zero where a light at a point is right there.
+fn direction_to_light(light: Light, point: vec3<f32>) -> vec3<f32> {
+    if light.kind == DIRECTIONAL {
+        return light.direction;
+    }
+    let between = light.position - point;
+    return between * inverseSqrt(max(dot(between, between), 1e-30));
 }
 
-/// The point in the world at a position in texels and a depth of the shadow map.
-fn shadow_point(light: Light, size: vec2<f32>, texels: vec2<f32>, depth: f32) -> vec3<f32> {
+/// Angular fall-off, 0..1, along the light ray with the unit vector `towards` TOWARDS the light: of a spot 1 inside
+/// the inner cone, 0 outside the outer one, smooth between; of every other light 1.
+fn angular_falloff(light: Light, towards: vec3<f32>) -> f32 {
+    if light.kind != SPOT {
+        return 1.0;
+    }
+    // Not smoothstep: WGSL leaves it open what that is between two equal edges.
+    let above = dot(towards, light.direction) - light.spot_cosines.y;
+    let unit = clamp(above / max(light.spot_cosines.x - light.spot_cosines.y, 1e-6), 0.0, 1.0);
+    return unit * unit * (3.0 - 2.0 * unit);
+}
+
+/// What `radiance` is multiplied by to give the irradiance at normal incidence of `point`, metres in the world, in clear
+/// air without blockers: 1 for a directional light, else `angular_falloff` over the square of the distance in 1/m^2,
+/// softened by the light's radius.
+fn light_falloff(light: Light, point: vec3<f32>) -> f32 {
+    if light.kind == DIRECTIONAL {
+        return 1.0;
+    }
+    let between = light.position - point;
+    let square = dot(between, between) + light.radius * light.radius;
+    return angular_falloff(light, direction_to_light(light, point)) / max(square, 1e-12);
+}
+
+/// Position in texels of a map, and depth, of a point in the clip space of that map; a point at or behind the light
+/// (w <= 0) is carried outside the map. `size`: of the map in texels.
+fn texels_from_clip(clip: vec4<f32>, size: vec2<f32>) -> vec3<f32> {
+    let before = clip.w > 0.0;
+    let ndc = clip.xyz / select(1.0, clip.w, before);
+    return select(vec3<f32>(-size, 0.0), vec3<f32>((ndc.xy * vec2<f32>(0.5, -0.5) + 0.5) * size, ndc.z), before);
+}
+
+/// The point in the world, metres, at a position in texels and a depth 0..1 of a map with the matrix
+/// `world_from_clip`. `size`: of the map in texels.
+fn point_from_texels(world_from_clip: mat4x4<f32>, size: vec2<f32>, texels: vec2<f32>, depth: f32) -> vec3<f32> {
     let ndc = (texels / size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
-    return (light.world_from_clip * vec4<f32>(ndc, depth, 1.0)).xyz;
+    let point = world_from_clip * vec4<f32>(ndc, depth, 1.0);
+    return point.xyz / max(point.w, 1e-12);
+}
+
+/// Position in texels of the shadow map, and depth, of a point in the world, metres; a point behind a spot is carried
+/// outside the map. `size`: of the map in texels.
+fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let clip = light.clip_from_world * vec4<f32>(point, 1.0);
+    if light.kind == DIRECTIONAL {
+        // Affine: w is 1.
+        return vec3<f32>((clip.xy * vec2<f32>(0.5, -0.5) + 0.5) * size, clip.z);
+    }
+    return texels_from_clip(clip, size);
+}
+
+/// The point in the world, metres, at a position in texels and a depth 0..1 of the shadow map.
+fn shadow_point(light: Light, size: vec2<f32>, texels: vec2<f32>, depth: f32) -> vec3<f32> {
+    if light.kind == DIRECTIONAL {
+        let ndc = (texels / size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
+        return (light.world_from_clip * vec4<f32>(ndc, depth, 1.0)).xyz;
+    }
+    return point_from_texels(light.world_from_clip, size, texels, depth);
+}
+
+/// What a light texture (gobo) lets through, linear RGB 0..1, towards `point`, metres in the world. `map`: any float
+/// format that filters, stretched over the whole shadow map; `map_sampler`: linear, clamped to the edge. Outside it a
+/// directional light goes by unhindered and a spot is dark. Non-finite texels are dark.
+fn light_texture_color(
+    light: Light, map: texture_2d<f32>, map_sampler: sampler, point: vec3<f32>
+) -> vec3<f32> {
+    let uv = shadow_position(light, vec2<f32>(1.0), point).xy;
+    let inside = all(uv >= vec2<f32>(0.0)) && all(uv <= vec2<f32>(1.0));
+    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL);
+    let color = finite_or_rgb(textureSampleLevel(map, map_sampler, uv, 0.0).rgb, 0.0);
+    return select(vec3<f32>(outside), clamp(color, vec3<f32>(0.0), vec3<f32>(1.0)), inside);
 }

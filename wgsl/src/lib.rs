@@ -83,7 +83,8 @@ macro_rules! systems {
 modules! {
     core::finite [],
     core::camera [],
-    core::light [],
+    core::light ["core::finite"],
+    core::shadow_views ["core::light"],
     core::color [],
     core::fourier_basis [],
     core::phase [],

@@ -75,6 +75,7 @@ impl From<crate::scattering::SettingsError> for CommandError {
             E::Size { what, .. } => match *what {
                 "a picture" => "--size",
                 "a shadow map" => "--shadow-map",
+                "a light texture" => "--light-texture",
                 _ => "--map",
             },
             E::Medium { name, .. } => match *name {
@@ -96,12 +97,26 @@ impl From<StageError> for CommandError {
                     CameraError::Direction { .. } => "--eye, --target",
                     CameraError::FieldOfView { .. } => "--fov",
                     CameraError::Planes { .. } => "--near, --far",
+                    CameraError::OrthographicPlanes { .. } => "--near, --far",
+                    CameraError::Height(_) => "--height",
                     CameraError::Viewport { .. } => "--size",
                 };
                 Self::misuse(flag, error)
             }
-            StageError::Light(error @ LightError::Direction(_)) => Self::misuse("--light", error),
-            StageError::Light(error @ LightError::Scene { .. }) => Self::failure(error),
+            StageError::Light(error) => match error {
+                LightError::Scene { .. } | LightError::Range { .. } => Self::failure(error),
+                LightError::Cascades(_)
+                | LightError::CascadesOfLocal
+                | LightError::Split(_)
+                | LightError::Camera => Self::misuse("--cascades", error),
+                LightError::TextureOfPoint => Self::misuse("--light-texture", error),
+                LightError::Direction(_)
+                | LightError::Position(_)
+                | LightError::Aim { .. }
+                | LightError::Cone { .. }
+                | LightError::Radius(_) => Self::misuse("--light", error),
+            },
+            StageError::Samples(_) => Self::misuse("--samples", error),
             StageError::Size(error) => error.into(),
             StageError::Pass(error) => error.into(),
         }

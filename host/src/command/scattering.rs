@@ -3,7 +3,7 @@
 
 use super::parse::{self, LightSpelling};
 use super::{CommandError, progress};
-use crate::core::{DepthRange, PerspectiveView, Raster, Sky, Tonemap, direction_from_angles};
+use crate::core::{DepthRange, PerspectiveView, Raster, Sky, Tonemap};
 use crate::data::{Mesh, load_mesh};
 use crate::formats::{Array, ArrayData, create_folder, write_exr, write_npy, write_png};
 use crate::scattering::{
@@ -133,14 +133,18 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         ..Settings::tuned(&gpu)
     };
     settings.validate(&gpu)?;
-    let LightSpelling::Directional { azimuth, elevation } = options.light;
+    if !matches!(options.light, LightSpelling::Directional { .. }) {
+        return Err(CommandError::misuse("--light", "only directional:AZ,EL is there for this command"));
+    }
     let setting = Setting {
         mesh: &mesh,
-        view,
-        light: direction_from_angles(azimuth, elevation),
-        radiance: options.radiance,
+        view: view.into(),
+        light: options.light.lighting(options.radiance),
+        light_texture: None,
+        cascades: None,
         sky: Sky::new(Vec3::new(0.12, 0.2, 0.36), Vec3::new(0.4, 0.42, 0.44), Vec3::splat(0.06)),
         medium,
+        samples: 1,
     };
     let raster = Raster::new(&gpu, &shaders)?;
     let stage = Stage::new(&gpu, &raster, &setting, options.size, options.shadow_map)?;

@@ -30,6 +30,22 @@ pub enum CameraError {
         /// Distance of the far plane.
         far: f32,
     },
+    /// The depth range of an orthographic view is empty.
+    #[error(
+        "near plane {near} m and far plane {far} m are impossible for an orthographic view: \
+         near < far is needed, both finite"
+    )]
+    OrthographicPlanes {
+        /// Distance of the near plane.
+        near: f32,
+        /// Distance of the far plane.
+        far: f32,
+    },
+    /// An orthographic picture has no height.
+    #[error(
+        "a picture of {0} m is impossible: the height of an orthographic view must be positive and finite"
+    )]
+    Height(f32),
     /// The picture has no pixels.
     #[error("a picture of {width}x{height} pixels is impossible: both must be at least 1")]
     Viewport {
@@ -67,6 +83,70 @@ pub struct PerspectiveView {
     pub depth: DepthRange,
 }
 
+/// An orthographic view in the words of a person. World in metres, y up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrthographicView {
+    /// Where distances of the planes are measured from.
+    pub eye: Vec3,
+    /// Point in the middle of the picture.
+    pub target: Vec3,
+    /// Height of the picture, metres.
+    pub height: f32,
+    /// Distance of the near plane, metres; negative behind the eye.
+    pub near: f32,
+    /// Distance of the far plane, metres, finite.
+    pub far: f32,
+    /// Which way clip depth runs.
+    pub depth: DepthRange,
+}
+
+/// A view of either kind.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum View {
+    /// View rays leave the eye.
+    Perspective(PerspectiveView),
+    /// View rays are parallel.
+    Orthographic(OrthographicView),
+}
+
+impl From<PerspectiveView> for View {
+    fn from(view: PerspectiveView) -> Self {
+        Self::Perspective(view)
+    }
+}
+
+impl From<OrthographicView> for View {
+    fn from(view: OrthographicView) -> Self {
+        Self::Orthographic(view)
+    }
+}
+
+impl View {
+    /// The perspective view, if it is one.
+    pub fn perspective(&self) -> Option<PerspectiveView> {
+        match self {
+            Self::Perspective(view) => Some(*view),
+            Self::Orthographic(_) => None,
+        }
+    }
+
+    /// Position of the eye.
+    pub fn eye(&self) -> Vec3 {
+        match self {
+            Self::Perspective(view) => view.eye,
+            Self::Orthographic(view) => view.eye,
+        }
+    }
+
+    /// Point in the middle of the picture.
+    pub fn target(&self) -> Vec3 {
+        match self {
+            Self::Perspective(view) => view.target,
+            Self::Orthographic(view) => view.target,
+        }
+    }
+}
+
 /// The uniform `Camera` of `core/camera`.
 #[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
 pub struct Camera {
@@ -87,54 +167,107 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// A camera of either kind; matrices are composed and inverted in f64.
+    ///
+    /// # Errors
+    /// [`CameraError`] where the view is degenerate.
+    pub fn new(of: &View, viewport: [u32; 2]) -> Result<Self, CameraError> {
+        match of {
+            View::Perspective(view) => Self::perspective(view, viewport),
+            View::Orthographic(view) => Self::orthographic(view, viewport),
+        }
+    }
+
     /// A perspective camera; matrices are composed and inverted in f64.
     ///
     /// # Errors
     /// [`CameraError`] where the view is degenerate.
     pub fn perspective(of: &PerspectiveView, viewport: [u32; 2]) -> Result<Self, CameraError> {
-        let direction = (of.target - of.eye).as_dvec3();
-        if !(direction.is_finite() && of.eye.is_finite() && direction.length() > 1e-6) {
-            return Err(CameraError::Direction { eye: of.eye, target: of.target });
-        }
+        let view = look(of.eye, of.target)?;
         if !(of.field_of_view >= 0.1 && of.field_of_view <= 170.0) {
             return Err(CameraError::FieldOfView { degrees: of.field_of_view });
         }
         if !(of.near > 0.0 && of.near.is_finite() && of.far > of.near) {
             return Err(CameraError::Planes { near: of.near, far: of.far });
         }
-        let [width, height] = viewport;
-        if width == 0 || height == 0 {
-            return Err(CameraError::Viewport { width, height });
-        }
-        let forward = direction.normalize();
-        let up = if forward.cross(DVec3::Y).length() < 1e-4 { DVec3::NEG_Z } else { DVec3::Y };
+        let aspect = aspect(viewport)?;
         let fov = f64::from(of.field_of_view).to_radians();
-        let aspect = f64::from(width) / f64::from(height);
         let near = f64::from(of.near);
         let projection = if of.far.is_finite() {
             directx::perspective(fov, aspect, near, f64::from(of.far))
         } else {
             directx::perspective_infinite(fov, aspect, near)
         };
+        Ok(Self::of(projection, view, of.eye, of.depth, viewport, 0))
+    }
+
+    /// An orthographic camera; matrices are composed and inverted in f64.
+    ///
+    /// # Errors
+    /// [`CameraError`] where the view is degenerate.
+    pub fn orthographic(of: &OrthographicView, viewport: [u32; 2]) -> Result<Self, CameraError> {
+        let view = look(of.eye, of.target)?;
+        if !(of.height > 0.0 && of.height.is_finite()) {
+            return Err(CameraError::Height(of.height));
+        }
+        if !(of.near.is_finite() && of.far.is_finite() && of.near < of.far) {
+            return Err(CameraError::OrthographicPlanes { near: of.near, far: of.far });
+        }
+        let up = 0.5 * f64::from(of.height);
+        let right = up * aspect(viewport)?;
+        let projection = directx::orthographic(-right, right, -up, up, f64::from(of.near), f64::from(of.far));
+        Ok(Self::of(projection, view, of.eye, of.depth, viewport, 1))
+    }
+
+    fn of(
+        projection: DMat4,
+        view: DMat4,
+        eye: Vec3,
+        depth: DepthRange,
+        [width, height]: [u32; 2],
+        kind: u32,
+    ) -> Self {
         // Reversing is depth' = w - depth in clip space.
         let reverse = DMat4::from_cols_array(&[
             1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0, 1.0,
         ]);
-        let (projection, near_depth, far_depth) = match of.depth {
+        let (projection, near_depth, far_depth) = match depth {
             DepthRange::Forward => (projection, 0.0, 1.0),
             DepthRange::Reversed => (reverse * projection, 1.0, 0.0),
         };
-        let clip_from_world = projection * view::look_to_mat4(of.eye.as_dvec3(), forward, up);
-        Ok(Self {
+        let clip_from_world = projection * view;
+        Self {
             clip_from_world: clip_from_world.as_mat4(),
             world_from_clip: clip_from_world.inverse().as_mat4(),
-            eye: of.eye,
+            eye,
             near_depth,
             viewport: Vec2::new(width as f32, height as f32),
             far_depth,
-            projection: 0,
-        })
+            projection: kind,
+        }
     }
+
+    /// True where near is 1 and far 0.
+    pub fn is_reversed(&self) -> bool {
+        self.far_depth < self.near_depth
+    }
+}
+
+fn look(eye: Vec3, target: Vec3) -> Result<DMat4, CameraError> {
+    let direction = (target - eye).as_dvec3();
+    if !(direction.is_finite() && eye.is_finite() && direction.length() > 1e-6) {
+        return Err(CameraError::Direction { eye, target });
+    }
+    let forward = direction.normalize();
+    let up = if forward.cross(DVec3::Y).length() < 1e-4 { DVec3::NEG_Z } else { DVec3::Y };
+    Ok(view::look_to_mat4(eye.as_dvec3(), forward, up))
+}
+
+fn aspect([width, height]: [u32; 2]) -> Result<f64, CameraError> {
+    if width == 0 || height == 0 {
+        return Err(CameraError::Viewport { width, height });
+    }
+    Ok(f64::from(width) / f64::from(height))
 }
 
 #[cfg(test)]
@@ -184,5 +317,28 @@ mod tests {
             assert!(Camera::perspective(&view, [64, 32]).is_err(), "{view:?}");
         }
         assert!(Camera::perspective(&view(), [0, 32]).is_err());
+    }
+
+    #[test]
+    fn orthographic_views_have_their_height_and_depths() {
+        for depth in [DepthRange::Forward, DepthRange::Reversed] {
+            let (eye, target) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, -3.0));
+            let of = OrthographicView { eye, target, height: 4.0, near: -1.0, far: 9.0, depth };
+            let camera = Camera::orthographic(&of, [64, 32]).unwrap();
+            let corner =
+                |along: f32| camera.clip_from_world.project_point3(eye + Vec3::new(4.0, 2.0, -along));
+            assert!((corner(-1.0) - Vec3::new(1.0, 1.0, camera.near_depth)).length() < 1e-6);
+            assert!((corner(9.0) - Vec3::new(1.0, 1.0, camera.far_depth)).length() < 1e-6);
+            for wrong in [
+                OrthographicView { height: 0.0, ..of },
+                OrthographicView { height: f32::NAN, ..of },
+                OrthographicView { far: f32::INFINITY, ..of },
+                OrthographicView { near: 9.0, ..of },
+                OrthographicView { target: eye, ..of },
+            ] {
+                assert!(Camera::new(&wrong.into(), [64, 32]).is_err(), "{wrong:?}");
+            }
+            assert!(Camera::orthographic(&of, [64, 0]).is_err());
+        }
     }
 }

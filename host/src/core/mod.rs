@@ -5,11 +5,13 @@ mod camera;
 mod light;
 mod raster;
 mod scan;
+mod shadow_views;
 mod tonemap;
 
-pub use camera::{Camera, CameraError, DepthRange, PerspectiveView};
+pub use camera::{Camera, CameraError, DepthRange, OrthographicView, PerspectiveView, View};
 pub use light::{DIRECTIONAL, Light, LightError, POINT, SPOT, direction_from_angles};
+pub use raster::{Drawing, MeshBuffers, Pictures, Raster, Sky};
 pub(crate) use raster::{MESH_VERTEX, begin};
-pub use raster::{MeshBuffers, Pictures, Raster, Sky};
 pub use scan::Scan;
+pub use shadow_views::{Cascades, MAX_VIEWS, ShadowViews};
 pub use tonemap::{Tonemap, TonemapParameters};

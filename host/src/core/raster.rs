@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The pass `core/raster`: shadow maps, lit pictures and skies.
 
-use super::{Camera, Light};
+use super::{Camera, Light, POINT, ShadowViews};
 use crate::data::Mesh;
 use crate::gpu::Gpu;
-use crate::pass::{Pass, PassError, RenderStages};
+use crate::pass::{Pass, PassError, RenderStages, Resource};
 use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
+use airlight_validate::Composed;
 use encase::ShaderType;
 use glam::Vec3;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::TextureFormat::{Depth32Float, Rgba16Float};
 
 /// The uniform `Sky` of the pass: linear RGB radiance of the surroundings.
@@ -59,19 +62,40 @@ impl MeshBuffers {
         }
     }
 
-    pub(crate) fn draw(&self, render: &mut wgpu::RenderPass<'_>) {
+    /// Draws the mesh as the instance `instance`.
+    pub(crate) fn draw(&self, render: &mut wgpu::RenderPass<'_>, instance: u32) {
         render.set_vertex_buffer(0, self.vertices.raw.slice(..));
         render.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
-        render.draw_indexed(0..self.count, 0, 0..1);
+        render.draw_indexed(0..self.count, 0, instance..instance + 1);
     }
 }
 
-/// Rasterises meshes from the light and from the camera.
-pub struct Raster {
-    shadow: Pass,
+/// What the pipelines of a picture depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Variant {
+    permutation: usize,
+    reversed: bool,
+    samples: u32,
+}
+
+/// Surfaces and what is behind them.
+struct PicturePasses {
     surface: Pass,
     background: Pass,
-    sampler: Sampler,
+}
+
+/// The permutations of the pass: bit 0 is an array of shadow maps, bit 1 a light texture.
+const PERMUTATIONS: [&str; 4] = ["default", "shadow_array", "light_texture", "shadow_array_light_texture"];
+
+/// Rasterises meshes from the light and from the camera.
+pub struct Raster {
+    composed: [Composed; 4],
+    shadow: Pass,
+    shadow_array: Pass,
+    /// Built when they are first asked for.
+    pictures: Mutex<BTreeMap<Variant, Arc<PicturePasses>>>,
+    shadow_sampler: Sampler,
+    light_sampler: Sampler,
 }
 
 /// Layout of the vertices of [`MeshBuffers`].
@@ -81,38 +105,90 @@ pub(crate) const MESH_VERTEX: wgpu::VertexBufferLayout<'static> = wgpu::VertexBu
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3],
 };
 
+/// A picture to be drawn.
+#[derive(Clone, Copy)]
+pub struct Drawing<'a> {
+    /// The camera, any projection and depth convention.
+    pub camera: &'a Camera,
+    /// The light; its shadow maps have forward depth.
+    pub light: &'a Light,
+    /// Sky and ground.
+    pub sky: &'a Sky,
+    /// What is drawn and casts shadows.
+    pub meshes: &'a [MeshBuffers],
+    /// Size of the standard shadow map in texels, which a point light has none of.
+    pub shadow_map: [u32; 2],
+    /// Views of an array of shadow maps, and the size of its layers; surfaces then take their shadows from it.
+    pub views: Option<(&'a ShadowViews, [u32; 2])>,
+    /// Colours a directional light or a spot.
+    pub light_texture: Option<&'a Texture>,
+    /// Samples a pixel, 1 or 4.
+    pub samples: u32,
+}
+
 impl Raster {
-    /// Builds the pipelines, for cameras with forward depth.
+    /// Composes the pass and builds the pipelines of shadow maps.
     ///
     /// # Errors
     /// [`PassError`].
     pub fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, PassError> {
-        let composed = shaders.compose("core/raster", "default")?;
-        let less = Some((wgpu::CompareFunction::Less, true));
-        let build = |vertex, fragment, vertices, target, depth| {
-            Pass::render(gpu, &composed, &RenderStages { vertex, fragment, vertices, target, depth })
+        let compose = |permutation| shaders.compose("core/raster", permutation);
+        let [plain, array, texture, both] = PERMUTATIONS;
+        let composed = [compose(plain)?, compose(array)?, compose(texture)?, compose(both)?];
+        let shadow = |composed| {
+            let stages = RenderStages {
+                vertex: "vertex_shadow",
+                fragment: None,
+                vertices: Some(MESH_VERTEX),
+                target: None,
+                depth: Some((wgpu::CompareFunction::Less, true)),
+                samples: 1,
+            };
+            Pass::render(gpu, composed, &stages)
         };
         Ok(Self {
-            shadow: build("vertex_shadow", None, Some(MESH_VERTEX), None, less)?,
-            surface: build(
-                "vertex_surface",
-                Some("fragment_surface"),
-                Some(MESH_VERTEX),
-                Some(Rgba16Float),
-                less,
-            )?,
-            background: build(
-                "vertex_background",
-                Some("fragment_background"),
-                None,
-                Some(Rgba16Float),
-                Some((wgpu::CompareFunction::Always, false)),
-            )?,
-            sampler: Sampler::shadow(gpu),
+            shadow: shadow(&composed[0])?,
+            shadow_array: shadow(&composed[1])?,
+            composed,
+            pictures: Mutex::default(),
+            shadow_sampler: Sampler::shadow(gpu),
+            light_sampler: Sampler::linear(gpu),
         })
     }
 
-    /// Records the shadow map of `meshes` as seen from the light.
+    fn passes(&self, gpu: &Gpu, variant: Variant) -> Result<Arc<PicturePasses>, PassError> {
+        // Building twice is all that a poisoned lock could lead to.
+        let mut pictures = self.pictures.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(passes) = pictures.get(&variant) {
+            return Ok(passes.clone());
+        }
+        let nearer =
+            if variant.reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less };
+        let build = |vertex, fragment, vertices, depth| {
+            let stages = RenderStages {
+                vertex,
+                fragment: Some(fragment),
+                vertices,
+                target: Some(Rgba16Float),
+                depth: Some(depth),
+                samples: variant.samples,
+            };
+            Pass::render(gpu, &self.composed[variant.permutation], &stages)
+        };
+        let passes = Arc::new(PicturePasses {
+            surface: build("vertex_surface", "fragment_surface", Some(MESH_VERTEX), (nearer, true))?,
+            background: build(
+                "vertex_background",
+                "fragment_background",
+                None,
+                (wgpu::CompareFunction::Always, false),
+            )?,
+        });
+        pictures.insert(variant, passes.clone());
+        Ok(passes)
+    }
+
+    /// Records the shadow map of `meshes` as seen from a directional light or a spot.
     ///
     /// # Errors
     /// [`PassError`].
@@ -125,45 +201,35 @@ impl Raster {
         shadow_map: &Texture,
     ) -> Result<(), PassError> {
         let bound = self.shadow.bind(gpu, &[("light", light.into())])?;
-        let mut render = begin(encoder, None, shadow_map);
+        let mut render = begin(encoder, None, &shadow_map.view, 1.0);
         self.shadow.set(&mut render, &bound);
-        meshes.iter().for_each(|mesh| mesh.draw(&mut render));
+        meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
         Ok(())
     }
 
-    /// Records the lit picture of `meshes` before the sky, with its depth buffer.
+    /// Records the shadow maps of `meshes` in the first `count` views of the uniform `shadow_views`, one a layer.
     ///
     /// # Errors
     /// [`PassError`].
-    #[allow(clippy::too_many_arguments)]
-    pub fn record_surface(
+    pub fn record_shadow_maps(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        [camera, light, sky]: [&Buffer; 3],
+        shadow_views: &Buffer,
+        count: u32,
         meshes: &[MeshBuffers],
-        shadow_map: &Texture,
-        surface: &Texture,
-        depth: &Texture,
+        shadow_maps: &Texture,
     ) -> Result<(), PassError> {
-        let resources = [
-            ("camera", camera.into()),
-            ("light", light.into()),
-            ("sky", sky.into()),
-            ("shadow_map", shadow_map.into()),
-            ("shadow_sampler", (&self.sampler).into()),
-        ];
-        let background = self.background.bind_known(gpu, &resources)?;
-        let lit = self.surface.bind_known(gpu, &resources)?;
-        let mut render = begin(encoder, Some(surface), depth);
-        self.background.set(&mut render, &background);
-        render.draw(0..3, 0..1);
-        self.surface.set(&mut render, &lit);
-        meshes.iter().for_each(|mesh| mesh.draw(&mut render));
+        let bound = self.shadow_array.bind(gpu, &[("shadow_views", shadow_views.into())])?;
+        for layer in 0..count.min(shadow_maps.size()[2]) {
+            let mut render = begin(encoder, None, &shadow_maps.layer(layer), 1.0);
+            self.shadow_array.set(&mut render, &bound);
+            meshes.iter().for_each(|mesh| mesh.draw(&mut render, layer));
+        }
         Ok(())
     }
 
-    /// A shadow map and a picture of `meshes`: shadow map (depth), surface radiance, depth buffer.
+    /// A shadow map and a picture of `meshes`, one sample a pixel.
     ///
     /// # Errors
     /// [`PassError`].
@@ -176,25 +242,80 @@ impl Raster {
         meshes: &[MeshBuffers],
         map: [u32; 2],
     ) -> Result<Pictures, PassError> {
-        let viewport = [camera.viewport.x as u32, camera.viewport.y as u32];
-        let pictures = Pictures {
-            shadow_map: Texture::target(gpu, map, Depth32Float),
-            surface: Texture::target(gpu, viewport, Rgba16Float),
-            depth: Texture::target(gpu, viewport, Depth32Float),
-        };
-        let (camera, light, sky) =
-            (Buffer::uniform(gpu, camera), Buffer::uniform(gpu, light), Buffer::uniform(gpu, sky));
-        let mut encoder = gpu.encoder();
-        self.record_shadow_map(gpu, &mut encoder, &light, meshes, &pictures.shadow_map)?;
-        self.record_surface(
-            gpu,
-            &mut encoder,
-            [&camera, &light, &sky],
+        let drawing = Drawing {
+            camera,
+            light,
+            sky,
             meshes,
-            &pictures.shadow_map,
-            &pictures.surface,
-            &pictures.depth,
-        )?;
+            shadow_map: map,
+            views: None,
+            light_texture: None,
+            samples: 1,
+        };
+        self.draw(gpu, &drawing)
+    }
+
+    /// The shadow maps and the picture of a drawing: surfaces before the sky, with their depth.
+    ///
+    /// # Errors
+    /// [`PassError`].
+    pub fn draw(&self, gpu: &Gpu, drawing: &Drawing<'_>) -> Result<Pictures, PassError> {
+        let Drawing { camera, light, meshes, samples, .. } = *drawing;
+        let viewport = [camera.viewport.x as u32, camera.viewport.y as u32];
+        let several = samples > 1;
+        let target = |format| Texture::multisampled(gpu, viewport, format, samples);
+        // What rays of a point light meet is in the array alone.
+        let single = light.kind != POINT;
+        let pictures = Pictures {
+            shadow_map: Texture::target(gpu, if single { drawing.shadow_map } else { [1, 1] }, Depth32Float),
+            shadow_maps: drawing.views.map(|(views, [width, height])| {
+                Texture::target_array(gpu, [width, height, views.count], Depth32Float)
+            }),
+            surface: Texture::target(gpu, viewport, Rgba16Float),
+            depth: if several { target(Depth32Float) } else { Texture::target(gpu, viewport, Depth32Float) },
+        };
+        let samples_of_surface = several.then(|| target(Rgba16Float));
+        let light_buffer = Buffer::uniform(gpu, light);
+        let mut encoder = gpu.encoder();
+        let casters = if single { meshes } else { &[] };
+        self.record_shadow_map(gpu, &mut encoder, &light_buffer, casters, &pictures.shadow_map)?;
+        let views = drawing.views.map(|(views, _)| (Buffer::uniform(gpu, views), views.count));
+        if let (Some((views, count)), Some(maps)) = (&views, &pictures.shadow_maps) {
+            self.record_shadow_maps(gpu, &mut encoder, views, *count, meshes, maps)?;
+        }
+
+        let (camera_buffer, sky) = (Buffer::uniform(gpu, camera), Buffer::uniform(gpu, drawing.sky));
+        let mut resources: Vec<(&str, Resource<'_>)> = vec![
+            ("camera", (&camera_buffer).into()),
+            ("light", (&light_buffer).into()),
+            ("sky", (&sky).into()),
+            ("shadow_map", (&pictures.shadow_map).into()),
+            ("shadow_sampler", (&self.shadow_sampler).into()),
+            ("light_sampler", (&self.light_sampler).into()),
+        ];
+        let mut permutation = 0;
+        if let (Some((views, _)), Some(maps)) = (&views, &pictures.shadow_maps) {
+            resources.extend([("shadow_views", views.into()), ("shadow_maps", maps.into())]);
+            permutation |= 1;
+        }
+        if let Some(texture) = drawing.light_texture {
+            resources.push(("light_texture", texture.into()));
+            permutation |= 2;
+        }
+        let variant = Variant { permutation, reversed: camera.is_reversed(), samples };
+        let passes = self.passes(gpu, variant)?;
+        let background = passes.background.bind_known(gpu, &resources)?;
+        let lit = passes.surface.bind_known(gpu, &resources)?;
+        let color = match &samples_of_surface {
+            Some(samples) => (&samples.view, Some(&pictures.surface.view)),
+            None => (&pictures.surface.view, None),
+        };
+        let mut render = begin(&mut encoder, Some(color), &pictures.depth.view, camera.far_depth);
+        passes.background.set(&mut render, &background);
+        render.draw(0..3, 0..1);
+        passes.surface.set(&mut render, &lit);
+        meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
+        drop(render);
         gpu.submit(encoder)?;
         Ok(pictures)
     }
@@ -202,32 +323,42 @@ impl Raster {
 
 /// What an engine has before it asks for light shafts.
 pub struct Pictures {
-    /// Depth from the light.
+    /// Depth from a directional light or a spot; one empty texel for a point light.
     pub shadow_map: Texture,
-    /// Linear RGB radiance of surfaces and sky.
+    /// Depth in the views of an array of shadow maps, a layer each.
+    pub shadow_maps: Option<Texture>,
+    /// Linear RGB radiance of surfaces and sky, one sample a pixel.
     pub surface: Texture,
-    /// Depth from the camera.
+    /// Depth from the camera, multisampled where the picture was drawn so.
     pub depth: Texture,
 }
 
-/// A render pass that clears its targets; depth to 1.
+/// `color`: the target, and what it is resolved into.
 pub(crate) fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    color: Option<&Texture>,
-    depth: &Texture,
+    color: Option<(&wgpu::TextureView, Option<&wgpu::TextureView>)>,
+    depth: &wgpu::TextureView,
+    far_depth: f32,
 ) -> wgpu::RenderPass<'a> {
-    let color = color.map(|texture| wgpu::RenderPassColorAttachment {
-        view: &texture.view,
+    let color = color.map(|(view, resolve_target)| wgpu::RenderPassColorAttachment {
+        view,
         depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+        resolve_target,
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            // Samples are of no use once they are resolved.
+            store: if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+        },
     });
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: None,
         color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &depth.view,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+            view: depth,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(far_depth),
+                store: wgpu::StoreOp::Store,
+            }),
             stencil_ops: None,
         }),
         ..Default::default()

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Input data: meshes, their loaders and the generators of scenes.
+//! Input data: meshes, light textures, their loaders and the generators of scenes.
 //!
 //! Everything is right-handed, y up and in metres; albedos are linear RGB in 0..1. Generators are
 //! deterministic: the same parameters give the same mesh.
 
+mod light_image;
 #[cfg(feature = "command")]
 mod load;
 mod mesh;
@@ -12,6 +13,9 @@ mod shapes;
 mod terrain;
 mod tree;
 
+#[cfg(feature = "command")]
+pub use light_image::load_light_image;
+pub use light_image::{LightImage, LightImageError};
 #[cfg(feature = "command")]
 pub use load::{MeshError, load_mesh, mesh_from_bytes};
 pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};

@@ -37,7 +37,7 @@ use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use wgpu::TextureFormat;
 
-/// What an engine brings: uniforms and two depth textures.
+/// What an engine brings: uniforms, depth textures, and what its light may have besides.
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
     /// Uniform `Camera`.
@@ -48,8 +48,14 @@ pub struct Inputs<'a> {
     pub medium: &'a Buffer,
     /// Depth buffer of the picture.
     pub depth: &'a Texture,
-    /// Standard shadow map.
+    /// Standard shadow map; one empty texel for a point light.
     pub shadow_map: &'a Texture,
+    /// Uniform `ShadowViews`, where shadow maps come in an array.
+    pub shadow_views: Option<&'a Buffer>,
+    /// The array of shadow maps, a layer a view.
+    pub shadow_maps: Option<&'a Texture>,
+    /// What colours the light, over the whole standard shadow map.
+    pub light_texture: Option<&'a Texture>,
 }
 
 /// The fragment form of a pass: a fifth faster than its compute form on a software adapter, and as good elsewhere.

@@ -99,6 +99,7 @@ impl ProjectiveRaster {
             vertices: Some(crate::core::MESH_VERTEX),
             target: None,
             depth: Some((wgpu::CompareFunction::Less, true)),
+            samples: 1,
         };
         Ok(Self { pass: Pass::render(gpu, &shaders.compose("scattering/project", "default")?, &stages)? })
     }
@@ -122,7 +123,7 @@ impl ProjectiveRaster {
         map: &Texture,
     ) {
         let [width, height, _] = map.size();
-        let mut render = crate::core::begin(encoder, None, map);
+        let mut render = crate::core::begin(encoder, None, &map.view, 1.0);
         let share = width as f32 / bound.splits.len() as f32;
         for (k, split) in bound.splits.iter().enumerate() {
             let left = k as f32 * share;
@@ -134,7 +135,7 @@ impl ProjectiveRaster {
             render.set_viewport(left, 0.0, share.min(width as f32 - left), height as f32, 0.0, 1.0);
             render.set_scissor_rect(first, 0, end - first, height);
             self.pass.set(&mut render, split);
-            meshes.iter().for_each(|mesh| mesh.draw(&mut render));
+            meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
         }
     }
 }

@@ -11,7 +11,7 @@ use airlight::core::{Camera, DepthRange, Light, PerspectiveView, Raster, Sky};
 use airlight::data::{Mesh, TreeParameters, plane, torus, tree};
 use airlight::scattering::{Medium, Rectification, Weighting};
 use airlight::validate::{Definitions, Library};
-use airlight::{Buffer, Gpu, Pass, Setting, Shaders, Stage, Texture};
+use airlight::{Buffer, Gpu, Lighting, Pass, Setting, Shaders, Stage, Texture};
 use airlight_tests::linear;
 use airlight_tests::reference::camera::{self, Camera as ReferenceCamera};
 use airlight_tests::reference::scattering as reference;
@@ -243,11 +243,13 @@ impl TestScene {
         let sky = Sky::new(Vec3::new(0.2, 0.3, 0.5), Vec3::splat(0.4), Vec3::splat(0.1));
         let setting = Setting {
             mesh: &self.mesh,
-            view: self.view,
-            light: self.light,
-            radiance: self.radiance,
+            view: self.view.into(),
+            light: Lighting::directional(self.light, self.radiance),
+            light_texture: None,
+            cascades: None,
             sky,
             medium: self.medium,
+            samples: 1,
         };
         Stage::new(gpu(), raster(), &setting, viewport, shadow_map).unwrap()
     }

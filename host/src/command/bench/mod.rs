@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `airlight bench`: ratios against baselines, interleaved in one run, with the error of both sides.
 
+pub mod baselines;
 mod scattering;
 mod tables;
 

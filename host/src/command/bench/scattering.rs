@@ -140,6 +140,7 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
     bar.set_message("evaluation of torus against tree");
     rows.push(scene_independence(gpu, shaders)?);
     bar.finish_and_clear();
+    rows.extend(super::baselines::rows(gpu, shaders, quiet)?);
     Ok(rows)
 }
 

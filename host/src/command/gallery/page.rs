@@ -3,6 +3,7 @@
 
 use super::Plate;
 use crate::command::CommandError;
+use crate::core::View;
 use crate::formats::write_whole;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -65,14 +66,19 @@ fn parameters(plate: &Plate) -> String {
     let medium = &plate.scene.medium;
     let view = &plate.scene.view;
     format!(
-        "{} triangles, extinction {} /m, albedo {}, g {}, eye {}, target {}, field of view {}°, light {:.3}",
+        "{} triangles, extinction {} /m, albedo {}, g {}, {}, {}",
         plate.scene.mesh.triangle_count(),
         medium.extinction,
         medium.albedo.x,
         medium.g,
-        view.eye,
-        view.target,
-        view.field_of_view,
+        match view {
+            View::Perspective(view) => {
+                format!("eye {}, target {}, field of view {}°", view.eye, view.target, view.field_of_view)
+            }
+            View::Orthographic(view) => {
+                format!("eye {}, target {}, height {} m, orthographic", view.eye, view.target, view.height)
+            }
+        },
         plate.scene.light,
     )
 }

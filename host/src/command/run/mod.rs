@@ -142,6 +142,7 @@ pub fn run(options: &Options) -> Result<(), CommandError> {
                 vertices: None,
                 target: Some(*target),
                 depth: None,
+                samples: 1,
             };
             let pass = Pass::render(&gpu, &plan.composed, &stages).map_err(|error| failed(&error))?;
             let bound = pass.bind(&gpu, &named).map_err(|error| failed(&error))?;

@@ -2,6 +2,7 @@
 //! Standard shadow maps, and their brute-force rectification.
 
 use super::slice::Rectification;
+use super::views::ShadowViews;
 use crate::linear::{Mat4, Vec3};
 use crate::reference::camera;
 
@@ -91,6 +92,31 @@ pub fn rectify(shadow_map: &ShadowMap<'_>, rectification: &Rectification, edge: 
                 high: others.into_iter().fold(z, f64::max),
                 ambiguous: left != right || top != bottom,
             }
+        };
+        (0..rectification.width).map(texel).collect::<Vec<_>>()
+    })
+    .concat()
+}
+
+/// The same for several shadow maps, of which the first that holds a light ray counts: cascades.
+///
+/// # Panics
+/// If a matrix is singular or a map has not the size that it states.
+#[must_use]
+pub fn rectify_views(
+    maps: &[ShadowMap<'_>],
+    rectification: &Rectification,
+    edge: f64,
+) -> Vec<RectifiedTexel> {
+    let views = ShadowViews::new(maps);
+    let frame = &rectification.frame;
+    crate::parallel::rows(rectification.slices.len(), |j| {
+        let slice = &rectification.slices[j];
+        let texel = |i: usize| {
+            let r = (i as f64 + 0.5) * slice.texel(rectification.width);
+            views.look_up(frame.eye + frame.radial(slice.phi) * r, edge, |blocker| {
+                blocker.map_or(1.0, |blocker| slice.depth(frame.polar(blocker).theta))
+            })
         };
         (0..rectification.width).map(texel).collect::<Vec<_>>()
     })

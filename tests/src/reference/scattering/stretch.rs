@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Exact visibility of a stretch of a view ray over one row whose texels have any lengths.
 
+use super::picture::{Picture, Scene, Start, ViewRay};
+use super::slice::{GUARD, Rectification};
 use super::visibility::Visibility;
 
 /// A stretch of a view ray in a row.
@@ -51,6 +53,54 @@ pub fn stretch_visibility<T: Copy + Into<f64>>(row: &[T], edges: &[f64], stretch
     }
     let average = lit_length / length;
     Visibility { average, weighted: if weight == 0.0 { average } else { lit_weight / weight } }
+}
+
+impl Rectification {
+    /// Exact visibility of the part of a view ray in the medium over a rectified map (row-major),
+    /// interpolated between the two rows about it. Unlike [`Self::visibility`] it may begin anywhere.
+    ///
+    /// # Panics
+    /// If the map has not `width` times the number of slices values.
+    #[must_use]
+    pub fn visibility_of<T: Copy + Into<f64>>(
+        &self,
+        map: &[T],
+        ray: &ViewRay,
+        extinction: f64,
+    ) -> Visibility {
+        assert_eq!(map.len(), self.width * self.slices.len(), "size of the rectified map");
+        let polar = self.frame.polar_direction(ray.direction);
+        let (first, second, share) = self.rows(polar.phi);
+        let at = |j: usize| {
+            let slice = &self.slices[j];
+            let metres = slice.texel(self.width) / polar.theta.sin();
+            let edges: Vec<f64> = (0..=self.width).map(|i| i as f64 * metres).collect();
+            let z = slice.depth(polar.theta).clamp(GUARD[0], GUARD[1]);
+            let stretch = Stretch { z, begin: ray.begin, end: ray.end, extinction };
+            stretch_visibility(&map[j * self.width..(j + 1) * self.width], &edges, stretch)
+        };
+        let (a, b) = (at(first), at(second));
+        Visibility {
+            average: a.average * (1.0 - share) + b.average * share,
+            weighted: a.weighted * (1.0 - share) + b.weighted * share,
+        }
+    }
+}
+
+/// [`super::picture`] with a medium that may begin at the near plane.
+///
+/// # Panics
+/// For a map or depth buffer of another size than stated, and a stride of 0.
+#[must_use]
+pub fn rectified_picture<T: Copy + Into<f64> + Sync>(
+    scene: &Scene<'_>,
+    rectification: &Rectification,
+    map: &[T],
+    start: Start,
+    stride: usize,
+) -> Picture {
+    let extinction = scene.medium.extinction;
+    scene.evaluate(stride, start, |ray| rectification.visibility_of(map, ray, extinction))
 }
 
 #[cfg(test)]

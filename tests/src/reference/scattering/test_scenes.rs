@@ -87,3 +87,44 @@ pub(super) fn roof(clip_from_world: Mat4, far_depth: f64, side: usize) -> Vec<f3
         })
         .collect()
 }
+
+/// A shadow map of a horizontal plate over x > 0 at a height, of a light that looks down on it from a
+/// position; rendered texel by texel.
+pub(super) fn plate(light: &Camera, height: f64, side: usize) -> Vec<f32> {
+    (0..side * side)
+        .map(|i| {
+            let ndc = Camera::pixel_ndc(i % side, i / side, side, side);
+            let (origin, direction) = (light.origin(ndc), light.ray(ndc));
+            let t = (height - origin.y) / direction.y;
+            let hit = origin + direction * t;
+            let depth =
+                light.project(hit).filter(|_| t > 0.0 && hit.x > 0.0).map_or(light.far_depth, |p| p[2]);
+            depth as f32
+        })
+        .collect()
+}
+
+/// The clip spaces of a light at a point that looks into all six directions.
+pub(super) fn faces(position: Vec3, reversed: bool) -> [Camera; 6] {
+    let x = Vec3::new(1.0, 0.0, 0.0);
+    let y = Vec3::new(0.0, 1.0, 0.0);
+    let z = Vec3::new(0.0, 0.0, 1.0);
+    [(x, y), (-x, y), (y, z), (-y, z), (z, y), (-z, y)].map(|(forward, up)| {
+        Camera::perspective(&View {
+            eye: position,
+            target: position + forward,
+            up,
+            fov_y: 0.5 * std::f64::consts::PI,
+            aspect: 1.0,
+            near: 0.05,
+            far: 100.0,
+            reversed,
+        })
+    })
+}
+
+/// The mean of a function over the midpoints of equal steps from one place to another.
+pub(super) fn stepped(from: f64, to: f64, steps: usize, function: impl Fn(f64) -> f64) -> f64 {
+    let step = (to - from) / steps as f64;
+    (0..steps).map(|i| function(from + (i as f64 + 0.5) * step)).sum::<f64>() / steps as f64
+}

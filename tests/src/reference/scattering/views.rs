@@ -17,6 +17,9 @@ pub struct LitRun {
     pub view: Option<usize>,
 }
 
+/// View, column and row of a texel (none for no view at all), and the depth that it gives.
+type Candidate = (Option<(usize, i64, i64)>, f64);
+
 /// The shadow maps of one light, perspective or orthographic.
 #[derive(Clone, Debug)]
 pub struct ShadowViews<'a> {
@@ -54,7 +57,7 @@ impl<'a> ShadowViews<'a> {
     #[must_use]
     pub fn look_up(&self, point: Vec3, edge: f64, depth_of: impl Fn(Option<Vec3>) -> f64) -> RectifiedTexel {
         let mut nominal = None;
-        let mut candidates: Vec<(Option<(usize, i64, i64)>, f64)> = Vec::new();
+        let mut candidates: Vec<Candidate> = Vec::new();
         let mut settled = false;
         for (view, map) in self.maps.iter().enumerate() {
             if map.clip_from_world.apply_point(point)[3] <= 0.0 {

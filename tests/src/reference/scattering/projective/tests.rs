@@ -154,6 +154,28 @@ fn edges_have_the_figures_of_the_equations() {
 }
 
 #[test]
+fn row_has_its_centre_in_the_middle_of_its_slopes() {
+    let rows = Projective { height: 4, y: [-1.0, 3.0], ..straight(1.0, 8.0, 2, 1) };
+    assert_eq!((0..4).map(|j| rows.row_slope(j)).collect::<Vec<_>>(), [-0.5, 0.5, 1.5, 2.5]);
+    for (slope, expected) in [
+        (-1.0, (0, 1, 0.0)),
+        (-0.5, (0, 1, 0.0)),
+        (0.75, (1, 2, 0.25)),
+        (2.5, (2, 3, 1.0)),
+        (3.0, (2, 3, 1.0)),
+    ] {
+        assert_eq!(rows.rows(slope), expected);
+    }
+    // One row is lit: what a ray sees of it falls off to either side.
+    let map = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+    for (slope, expected) in [(-0.5, 0.0), (0.0, 0.5), (0.5, 1.0), (1.25, 0.25), (2.5, 0.0)] {
+        let direction = Vec3::new(1.0, slope, 0.0).normalised();
+        let ray = ViewRay { origin: Vec3::default(), direction, begin: 0.0, end: 5.0 };
+        assert!((rows.visibility(&map, &ray, 0.1).weighted - expected).abs() < 1e-12);
+    }
+}
+
+#[test]
 fn splits_do_not_change_exact_visibility() {
     // A row whose shadows begin and end on edges of the map without splits: finer rows with splits
     // hold the same light rays, but for the texels on those edges.

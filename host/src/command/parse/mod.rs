@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Spellings that all commands share.
 
+mod light;
+// Not every command takes all of these.
+#[allow(dead_code)]
+mod view;
+
+pub use light::{LightSpelling, light};
+#[allow(unused_imports)]
+pub use view::{DepthSpelling, Projection, cascades, samples};
+
 use glam::Vec3;
 
 /// `x,y,z`, finite numbers.
@@ -29,41 +38,6 @@ pub fn number(text: &str) -> Result<f32, String> {
         .ok_or_else(|| format!("`{text}` is not a finite number"))
 }
 
-/// A light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightSpelling {
-    /// `directional:AZIMUTH,ELEVATION` in degrees.
-    Directional {
-        /// From +z towards +x.
-        azimuth: f32,
-        /// Above the horizon.
-        elevation: f32,
-    },
-}
-
-/// `directional:AZ,EL`.
-pub fn light(text: &str) -> Result<LightSpelling, String> {
-    let wrong =
-        || format!("`{text}` is not a light such as directional:135,40 (azimuth, elevation in degrees)");
-    let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
-    match kind {
-        "directional" => {
-            let values = numbers(rest)?;
-            let [azimuth, elevation] = values[..] else { return Err(wrong()) };
-            if elevation.abs() > 90.0 {
-                return Err(format!(
-                    "elevation {elevation} is impossible: it must be from -90 to 90 degrees"
-                ));
-            }
-            Ok(LightSpelling::Directional { azimuth, elevation })
-        }
-        "spot" | "point" | "area" | "textured" | "environment" => {
-            Err(format!("light `{kind}` is not there yet; directional:AZ,EL is"))
-        }
-        _ => Err(wrong()),
-    }
-}
-
 fn numbers(text: &str) -> Result<Vec<f32>, String> {
     text.split(',').map(number).collect()
 }
@@ -77,20 +51,11 @@ mod tests {
     fn spellings_are_read_and_nonsense_is_refused() {
         assert_eq!(vector("1,-2,3.5").unwrap(), Vec3::new(1.0, -2.0, 3.5));
         assert_eq!(size("640x480").unwrap(), [640, 480]);
-        assert_eq!(
-            light("directional:10,20").unwrap(),
-            LightSpelling::Directional { azimuth: 10.0, elevation: 20.0 }
-        );
         for wrong in ["", "1,2", "1,2,3,4", "1,nan,3", "a,b,c", "inf,0,0"] {
             assert!(vector(wrong).is_err(), "{wrong}");
         }
         for wrong in ["", "640", "0x5", "-1x5", "640x", "axb", "1.5x2", "99999999999x1"] {
             assert!(size(wrong).is_err(), "{wrong}");
-        }
-        for wrong in
-            ["sun", "directional", "directional:1", "directional:0,91", "spot:1,2", "directional:nan,0"]
-        {
-            assert!(light(wrong).is_err(), "{wrong}");
         }
     }
 }

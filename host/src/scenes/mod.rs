@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The scenes of the gallery and the benchmarks: real meshes among generated trees and terrain.
 
-use crate::core::{DepthRange, PerspectiveView, Sky, direction_from_angles};
+mod lights;
+mod parts;
+
+use crate::core::{Cascades, DepthRange, PerspectiveView, Sky, View, direction_from_angles};
 use crate::data::{
-    Bounds, Mesh, MeshError, TerrainParameters, TreeParameters, mesh_from_bytes, plane, terrain,
+    Bounds, LightImage, Mesh, MeshError, TerrainParameters, TreeParameters, mesh_from_bytes, plane, terrain,
     terrain_height, torus, tree,
 };
 use crate::scattering::{Medium, SettingsError};
-use crate::stage::Setting;
+use crate::stage::{Lighting, Setting};
 use glam::{Mat4, Quat, Vec2, Vec3};
 
 /// Meshes that are part of the program, from `host/assets`.
-pub const BUNNY: (&str, &[u8]) = ("bunny.obj", include_bytes!("../assets/bunny.obj"));
+pub const BUNNY: (&str, &[u8]) = ("bunny.obj", include_bytes!("../../assets/bunny.obj"));
 /// See [`BUNNY`].
-pub const SUZANNE: (&str, &[u8]) = ("suzanne.obj", include_bytes!("../assets/suzanne.obj"));
+pub const SUZANNE: (&str, &[u8]) = ("suzanne.obj", include_bytes!("../../assets/suzanne.obj"));
 
 /// All that a picture needs.
 #[derive(Clone, Debug)]
@@ -25,11 +28,13 @@ pub struct Scene {
     /// What is drawn.
     pub mesh: Mesh,
     /// The camera.
-    pub view: PerspectiveView,
-    /// Unit vector TOWARDS the light.
-    pub light: Vec3,
-    /// Radiance of the light, linear RGB.
-    pub radiance: Vec3,
+    pub view: View,
+    /// The light.
+    pub light: Lighting,
+    /// What colours the light.
+    pub light_texture: Option<LightImage>,
+    /// Shadow maps fitted to parts of the view.
+    pub cascades: Option<Cascades>,
     /// Radiance of the sky and the ground.
     pub sky: Sky,
     /// Air.
@@ -45,9 +50,11 @@ impl Scene {
             mesh: &self.mesh,
             view: self.view,
             light: self.light,
-            radiance: self.radiance,
+            light_texture: self.light_texture.as_ref(),
+            cascades: self.cascades,
             sky: self.sky,
             medium: self.medium,
+            samples: 1,
         }
     }
 }
@@ -64,7 +71,8 @@ pub enum SceneError {
 }
 
 /// The names that [`scene`] knows.
-pub const SCENES: [&str; 4] = ["foliage", "terrain", "torus", "plane"];
+pub const SCENES: [&str; 9] =
+    ["foliage", "terrain", "torus", "plane", "spot", "lamp", "glass", "orthographic", "cascades"];
 
 /// A scene by name; none if there is no such scene.
 ///
@@ -76,11 +84,20 @@ pub fn scene(name: &str) -> Result<Option<Scene>, SceneError> {
         "terrain" => suzanne_on_terrain()?,
         "torus" => torus_scene()?,
         "plane" => plane_scene()?,
+        "spot" => lights::spot()?,
+        "lamp" => lights::lamp()?,
+        "glass" => lights::glass()?,
+        "orthographic" => lights::orthographic()?,
+        "cascades" => lights::cascades()?,
         _ => return Ok(None),
     }))
 }
 
-fn view(eye: Vec3, target: Vec3, field_of_view: f32, near: f32, far: f32) -> PerspectiveView {
+fn view(eye: Vec3, target: Vec3, field_of_view: f32, near: f32, far: f32) -> View {
+    perspective(eye, target, field_of_view, near, far).into()
+}
+
+fn perspective(eye: Vec3, target: Vec3, field_of_view: f32, near: f32, far: f32) -> PerspectiveView {
     PerspectiveView { eye, target, field_of_view, near, far, depth: DepthRange::Forward }
 }
 
@@ -110,8 +127,9 @@ fn foliage() -> Result<Scene, SceneError> {
         title: "Bunny under a tree",
         mesh,
         view: view(Vec3::new(-2.3, 1.0, 8.6), Vec3::new(-0.35, 2.85, 0.0), 40.0, 0.1, 30.0),
-        light: direction_from_angles(184.0, 39.0),
-        radiance: Vec3::new(8.4, 6.0, 3.5),
+        light: Lighting::directional(direction_from_angles(184.0, 39.0), Vec3::new(8.4, 6.0, 3.5)),
+        light_texture: None,
+        cascades: None,
         sky: Sky::new(Vec3::new(0.05, 0.10, 0.20), Vec3::new(0.17, 0.19, 0.22), Vec3::new(0.03, 0.03, 0.025)),
         medium: Medium::new(0.034, Vec3::splat(0.96), 0.6, 40.0)?,
         exposure: 0.62,
@@ -137,8 +155,9 @@ fn suzanne_on_terrain() -> Result<Scene, SceneError> {
             0.2,
             60.0,
         ),
-        light: direction_from_angles(258.0, 20.0),
-        radiance: Vec3::new(9.0, 5.4, 2.7),
+        light: Lighting::directional(direction_from_angles(258.0, 20.0), Vec3::new(9.0, 5.4, 2.7)),
+        light_texture: None,
+        cascades: None,
         sky: Sky::new(Vec3::new(0.04, 0.07, 0.15), Vec3::new(0.22, 0.16, 0.13), Vec3::new(0.03, 0.03, 0.03)),
         medium: Medium::new(0.016, Vec3::splat(0.95), 0.4, 80.0)?,
         exposure: 0.9,
@@ -158,8 +177,9 @@ fn torus_scene() -> Result<Scene, SceneError> {
         title: "A torus",
         mesh,
         view: view(Vec3::new(-4.6, 1.3, 6.4), Vec3::new(-0.1, 2.15, 0.6), 46.0, 0.1, 24.0),
-        light,
-        radiance: Vec3::new(8.5, 7.0, 5.4),
+        light: Lighting::directional(light, Vec3::new(8.5, 7.0, 5.4)),
+        light_texture: None,
+        cascades: None,
         sky: Sky::new(Vec3::new(0.02, 0.03, 0.06), Vec3::new(0.05, 0.06, 0.08), Vec3::new(0.03, 0.03, 0.03)),
         medium: Medium::new(0.045, Vec3::splat(0.95), 0.35, 30.0)?,
         exposure: 0.8,
@@ -178,8 +198,9 @@ fn plane_scene() -> Result<Scene, SceneError> {
         title: "A plate under an overhead light",
         mesh,
         view: view(Vec3::new(0.0, 1.5, 7.0), Vec3::new(0.0, 1.6, 0.0), 50.0, 0.1, 20.0),
-        light: Vec3::Y,
-        radiance: Vec3::splat(12.0),
+        light: Lighting::directional(Vec3::Y, Vec3::splat(12.0)),
+        light_texture: None,
+        cascades: None,
         sky: Sky::new(Vec3::splat(0.05), Vec3::splat(0.1), Vec3::splat(0.03)),
         medium: Medium::new(0.08, Vec3::splat(0.95), 0.0, 20.0)?,
         exposure: 1.0,
@@ -191,11 +212,30 @@ pub fn framing(bounds: &Bounds, field_of_view: f32) -> PerspectiveView {
     let radius = bounds.radius().max(1e-4);
     let distance = 1.25 * radius / (0.5 * field_of_view.to_radians()).sin();
     let eye = bounds.center() + Vec3::new(-0.45, 0.28, 1.0).normalize() * distance;
-    view(
+    perspective(
         eye,
         bounds.center(),
         field_of_view,
         (distance - radius).max(0.02 * radius) * 0.2,
         distance + 2.0 * radius,
     )
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::core::Camera;
+
+    #[test]
+    fn every_scene_can_be_drawn() {
+        for name in SCENES {
+            let scene = scene(name).unwrap().unwrap();
+            assert_eq!(scene.name, name);
+            assert_eq!(scene.mesh.validate(), Ok(()), "{name}");
+            assert!(Camera::new(&scene.view, [160, 90]).is_ok(), "{name}");
+            assert!(scene.light.fitted(&scene.mesh.bounds().unwrap()).is_ok(), "{name}");
+        }
+        assert!(scene("nope").unwrap().is_none());
+    }
 }
