@@ -764,6 +764,9 @@ fn pictures_reach_their_figures() {
     for (name, budget) in [("foliage", 0.006), ("terrain", 0.006), ("plane", 0.02), ("torus", 0.02)] {
         let stage = gallery(name);
         for splits in 1..=4 {
+            // The figures hold from two splits on. One alone, which is the thesis' row, gives most of its texels to the
+            // first metre, and the rest are too few to average the ringing out: 0.0082 on foliage misses 0.006.
+            let budget = if splits == 1 { 1.5 * budget } else { budget };
             let map = [if splits == 3 { 513 } else { 512 }, 512];
             let average = Settings { weighting: Weighting::Average, ..Settings::default() };
             let (found, method) = stage.prefiltered(stage.map(map, splits), average);
@@ -776,9 +779,6 @@ fn pictures_reach_their_figures() {
                 stage.projective(splits).obliqueness,
                 100.0 * radiance
             );
-            // One split alone gives most of its texels to the first metre, and the rest are too few to average the
-            // ringing out: that is its own limit.
-            let budget = if splits == 1 { 1.5 * budget } else { budget };
             if !(error <= budget && radiance <= 0.03) {
                 failures.push(format!("{name}, {splits} splits: {error} {radiance}"));
             }
