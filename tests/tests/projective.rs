@@ -7,14 +7,16 @@
 #[path = "support/gpu.rs"]
 mod gpu;
 
-use airlight::core::{Camera, Light, MeshBuffers, Pictures, Sky, direction_from_angles};
+use airlight::core::{
+    Camera, DepthRange, Light, MeshBuffers, PerspectiveView, Pictures, Sky, direction_from_angles,
+};
 use airlight::data::{Mesh, plane};
 use airlight::scattering::{
     Along, BasisFormat, Choice, Inputs, March, Medium, OBLIQUENESS_LIMIT, Projective, ProjectiveError,
     ProjectiveMap, ProjectivePrefiltered, ProjectiveRaster, ProjectiveRows, Settings, SettingsError, Start,
     Weighting, choose, projective_rows,
 };
-use airlight::{Buffer, Texture, scenes};
+use airlight::{Buffer, Lighting, Texture, scenes};
 use airlight_tests::error;
 use airlight_tests::linear;
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView};
@@ -66,12 +68,12 @@ fn next_to_the_border(camera: &ReferenceCamera, light: linear::Vec3, sine: f64) 
     !camera.is_orthographic() && (inside(1.0).abs() < sine || inside(-1.0).abs() < sine)
 }
 
-/// Error of the direction of view rays, radians, by the rounding of an f32 matrix from clip space to the world: with a
-/// finite far plane and forward depth they are the difference of numbers as large as the eye's place over the near
+/// Error of the direction of view rays, radians, by the rounding of an f32 matrix from clip space to the world: with
+/// forward depth they are the difference of numbers as large as the eye's place over the near
 /// distance.
 fn matrix_rounding(camera: &ReferenceCamera) -> f64 {
-    let cancels = !camera.is_orthographic() && camera.far.is_finite() && camera.far_depth > 0.5;
-    if cancels { 2e-7 * camera.eye.length() / camera.near } else { 0.0 }
+    let cancels = !camera.is_orthographic() && camera.far_depth > 0.5;
+    if cancels { 6e-8 * camera.eye.length() / camera.near } else { 0.0 }
 }
 
 /// A light outside of the picture: at a corner for 0, at a right angle to the view for 1.
@@ -216,7 +218,7 @@ fn view_rays_are_rows_light_rays_columns_and_all_of_the_frustum_is_inside() {
             let [u_on, v_on, z_on] = project(point - case.light * 2.0);
             worst[3] = worst[3].max(
                 (u_on - u).abs().max((v_on - v).abs())
-                    / (1e-5 + 10.0 * ratio(1.0 + row.abs(), span[0].min(1.0))),
+                    / (0.1 * (1e-5 + ratio(1.0 + row.abs(), span[0].min(1.0)))),
             );
             assert!(z_on > z, "case {index}: depth falls along the light");
         }
@@ -305,7 +307,7 @@ fn shader_places_points_and_rays_as_the_reference_does() {
         let plane = 3e-7 * case.camera.far.min(1e4) / case.camera.near.max(1e-3);
         let near = (1e-5 + plane + 1e-6 * metres / x.abs().max(reference.near.abs()).max(1e-3))
             * oblique.max(1.0)
-            * 96.0;
+            * 5.0;
         if x > reference.near {
             note(0, (found[0] - reference.column(x)).abs(), near);
             note(1, (found[1] - expected_row).abs(), 40.0 * point_of(reference.y));
@@ -317,7 +319,7 @@ fn shader_places_points_and_rays_as_the_reference_does() {
         let begin = if reference.orthographic.is_some() { reference.coordinates(origin)[0] } else { 0.0 };
         note(3, (found[5] - begin).abs().max((found[6] - x).abs()), 2e-6 * scale);
         note(3, (found[7] * reference.axes[0].dot(direction) - 1.0).abs(), 2e-6 * steep);
-        note(4, (found[8] - column).abs(), 96.0 * 1e-4);
+        note(4, (found[8] - column).abs(), 96.0 * 1e-5);
         note(4, (found[9] - reference.x_of(column)).abs(), (2e-6 * oblique.max(1.0) + plane) * scale);
         note(5, (found[10] / reference.reference_length(7) - 1.0).abs(), matrix * steep);
         note(5, (found[11] - reference.row_slope(7)).abs(), matrix * steep * greatest(reference.y));
@@ -326,7 +328,7 @@ fn shader_places_points_and_rays_as_the_reference_does() {
         // The weight of all up to the end: the integral of transmittance.
         let until = (x - first).max(0.0) * 1.5;
         let weight = if extinction == 0.0 { until } else { -(-extinction * until).exp_m1() / extinction };
-        note(6, (found[13] - weight).abs(), 1e-5 * scale);
+        note(6, (found[13] - weight).abs(), 2e-6 * scale);
         // Interpolation at that column gives the weighted mean of what is lit up to the last whole texel.
         if x > reference.near {
             let place = found[14];
@@ -342,7 +344,7 @@ fn shader_places_points_and_rays_as_the_reference_does() {
             let mean = 1.0 + (whole(texel) / whole(texel + 1.0) - 1.0) * share;
             let sharp = (reference.column(x) - texel - 0.5).abs() < 0.49;
             if texel > 0.0 && sharp {
-                note(7, (mean - whole(texel) / weight).abs(), 2e-3);
+                note(7, (mean - whole(texel) / weight).abs(), 1e-4);
             }
         }
         let [a, b] = [reference.x_of(column), reference.row_slope(7)];
@@ -483,7 +485,16 @@ impl Stage {
     fn inputs(&self) -> Inputs<'_> {
         let [camera, light, medium] = &self.buffers;
         let Pictures { depth, shadow_map, .. } = &self.pictures;
-        Inputs { camera, light, medium, depth, shadow_map }
+        Inputs {
+            camera,
+            light,
+            medium,
+            depth,
+            shadow_map,
+            shadow_views: None,
+            shadow_maps: None,
+            light_texture: None,
+        }
     }
 
     fn projective(&self, splits: u32) -> Projective {
@@ -579,15 +590,23 @@ fn scattered(texture: &Texture) -> Scattered {
     }
 }
 
+/// The direction towards the light of a scene of the gallery.
+fn towards(scene: &scenes::Scene) -> Vec3 {
+    match scene.light {
+        Lighting::Directional { towards, .. } => towards,
+        _ => panic!("{} has a light at a point", scene.name),
+    }
+}
+
 /// A scene of the gallery with the light beside the picture.
 fn gallery(name: &str) -> Stage {
     let scene = scenes::scene(name).unwrap().unwrap();
     let light = match name {
         "foliage" => direction_from_angles(105.0, 48.0),
         "torus" => direction_from_angles(75.0, 40.0),
-        _ => scene.light,
+        _ => towards(&scene),
     };
-    let camera = gpu::reference_camera(&scene.setting().view, PICTURE);
+    let camera = gpu::reference_camera(&scene.view.perspective().unwrap(), PICTURE);
     Stage::new(&scene.mesh, camera, light, scene.medium, PICTURE, 1024)
 }
 
@@ -689,19 +708,19 @@ fn blockers_outside_of_the_frustum_cast_shadows() {
     // A plate high above the picture, and one far below it that casts none.
     let mut mesh = plane(Vec2::splat(3.0), 1).transformed(Mat4::from_translation(Vec3::new(0.0, 40.0, 0.0)));
     mesh.append(&plane(Vec2::splat(60.0), 1).transformed(Mat4::from_translation(Vec3::Y * -40.0)));
-    let view = airlight::core::PerspectiveView {
+    let view = PerspectiveView {
         eye: Vec3::new(0.0, 1.0, 8.0),
         target: Vec3::new(0.0, 1.0, 0.0),
         field_of_view: 40.0,
         near: 0.1,
         far: 20.0,
-        depth: airlight::core::DepthRange::Forward,
+        depth: DepthRange::Forward,
     };
     let picture = [96, 64];
     let medium = Medium::new(0.02, Vec3::ONE, 0.0, 20.0).unwrap();
     let stage = Stage::new(&mesh, gpu::reference_camera(&view, picture), Vec3::Y, medium, picture, 1024);
     for splits in 1..=4 {
-        let drawn = stage.drawn([256, 128], splits);
+        let drawn = stage.drawn([264, 128], splits);
         let values = drawn.rectified.read(gpu()).unwrap();
         let (near, rest): (Vec<f32>, Vec<f32>) = values.iter().partition(|z| **z < 0.05);
         assert!(near.iter().all(|z| *z == 0.0) && near.len() > 50, "{} blocked", near.len());
@@ -745,6 +764,9 @@ fn pictures_reach_their_figures() {
     for (name, budget) in [("foliage", 0.006), ("terrain", 0.006), ("plane", 0.02), ("torus", 0.02)] {
         let stage = gallery(name);
         for splits in 1..=4 {
+            // The figures hold from two splits on. One alone, which is the thesis' row, gives most of its texels to the
+            // first metre, and the rest are too few to average the ringing out: 0.0082 on foliage misses 0.006.
+            let budget = if splits == 1 { 1.5 * budget } else { budget };
             let map = [if splits == 3 { 513 } else { 512 }, 512];
             let average = Settings { weighting: Weighting::Average, ..Settings::default() };
             let (found, method) = stage.prefiltered(stage.map(map, splits), average);
@@ -757,9 +779,6 @@ fn pictures_reach_their_figures() {
                 stage.projective(splits).obliqueness,
                 100.0 * radiance
             );
-            // One split alone gives most of its texels to the first metre, and the rest are too few to average the
-            // ringing out: that is its own limit.
-            let budget = if splits == 1 { 1.5 * budget } else { budget };
             if !(error <= budget && radiance <= 0.03) {
                 failures.push(format!("{name}, {splits} splits: {error} {radiance}"));
             }
@@ -797,7 +816,7 @@ fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
     let (mut compared, mut failures) = ([0; 2], Vec::new());
     for name in ["foliage", "terrain", "torus", "plane"] {
         let scene = scenes::scene(name).unwrap().unwrap();
-        let camera = gpu::reference_camera(&scene.setting().view, SMALL);
+        let camera = gpu::reference_camera(&scene.view.perspective().unwrap(), SMALL);
         for turn in [1.0, 0.5, 0.3, 0.2, 0.15, 0.1, 0.03, 0.01] {
             let light = light_beside_corner(&camera, turn);
             let stage = Stage::new(&scene.mesh, camera, light, scene.medium, SMALL, 1024);
@@ -850,31 +869,28 @@ fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
 }
 
 #[test]
-fn regions_and_near_planes_are_exact_too() {
+fn regions_and_near_planes_keep_the_figures() {
     let _turn = gpu::turn();
-    let mut stage = gallery("terrain");
-    // A near plane that matters, in air that is thick enough to tell.
     let scene = scenes::scene("terrain").unwrap().unwrap();
-    let mut view = scene.setting().view;
+    let mut view = scene.view.perspective().unwrap();
+    // A near plane that matters, and air in which the reference ray of a row is far from some of its rays.
     view.near = 6.0;
-    let air = Medium { extinction: 0.06, ..scene.medium };
-    for near in [false, true] {
-        if near {
-            stage = Stage::new(
-                &scene.mesh,
-                gpu::reference_camera(&view, PICTURE),
-                scene.light,
-                air,
-                PICTURE,
-                1024,
-            );
-        }
-        let start = if near { reference::Start::NearPlane } else { reference::Start::Eye };
-        for regions in [1, 3, 8] {
+    let near = gpu::reference_camera(&view, PICTURE);
+    let thick = Medium { extinction: 0.06, ..scene.medium };
+    let eye = gpu::reference_camera(&scene.view.perspective().unwrap(), PICTURE);
+    let cases = [
+        ("from the eye", eye, scene.medium, reference::Start::Eye, [0.005, 0.005, 0.005]),
+        ("from the near plane", near, scene.medium, reference::Start::NearPlane, [0.03, 0.01, 0.01]),
+        ("from the near plane in thick air", near, thick, reference::Start::NearPlane, [0.08, 0.03, 0.01]),
+    ];
+    for (name, camera, medium, start, budgets) in cases {
+        let stage = Stage::new(&scene.mesh, camera, towards(&scene), medium, PICTURE, 1024);
+        let mut before = f64::INFINITY;
+        for (regions, budget) in [1, 3, 8].into_iter().zip(budgets) {
             let settings = Settings {
                 regions,
                 format: BasisFormat::Rgba16Float,
-                start: if near { Start::NearPlane } else { Start::Eye },
+                start: if start == reference::Start::Eye { Start::Eye } else { Start::NearPlane },
                 epipole_march: false,
                 ..Settings::default()
             };
@@ -882,10 +898,13 @@ fn regions_and_near_planes_are_exact_too() {
             let exact = stage.exact_from(&method.map.rectified, 3, start);
             let error = error::relative_rmse(&found.radiance, &exact.radiance());
             println!(
-                "terrain, {regions} regions, from the near plane {near}: radiance {:.2} %",
-                100.0 * error
+                "terrain {name}, {regions} regions: radiance {:.2} % of at most {:.1} %",
+                100.0 * error,
+                100.0 * budget
             );
-            assert!(error <= 0.02, "{regions} {near}: {error}");
+            // Regions are put together by the ray's own weights: never worse.
+            assert!(error <= budget && error <= before + 5e-4, "{name}, {regions} regions: {error}");
+            before = error;
         }
     }
 }
@@ -894,15 +913,15 @@ fn regions_and_near_planes_are_exact_too() {
 fn a_row_lit_up_to_a_column_has_its_closed_form() {
     let _turn = gpu::turn();
     // A narrow view, so that all rays of a row are nearly as long as its reference ray.
-    let view = airlight::core::PerspectiveView {
+    let view = PerspectiveView {
         eye: Vec3::new(1.0, 2.0, -3.0),
         target: Vec3::new(2.0, 2.2, -9.0),
         field_of_view: 12.0,
         near: 0.1,
         far: 100.0,
-        depth: airlight::core::DepthRange::Reversed,
+        depth: DepthRange::Reversed,
     };
-    const SIZE: [u32; 2] = [512, 16];
+    const SIZE: [u32; 2] = [516, 16];
     let mesh = plane(Vec2::splat(9.0), 1);
     for (splits, lit, extinction) in
         [(1, 200, 0.02), (2, 300, 0.05), (3, 340, 0.01), (4, 400, 0.1), (4, 256, 0.0)]
@@ -923,8 +942,7 @@ fn a_row_lit_up_to_a_column_has_its_closed_form() {
             let map = stage.map(SIZE, splits);
             map.rectified.write(gpu(), &row.repeat(SIZE[1] as usize)).unwrap();
             let marched = stage.marched(&map, weighting);
-            let settings =
-                Settings { weighting, window: false, bases: 64, epipole_march: false, ..Settings::default() };
+            let settings = Settings { weighting, bases: 128, epipole_march: false, ..Settings::default() };
             let method = ProjectivePrefiltered::new(gpu(), shaders(), map, settings, PICTURE).unwrap();
             let bound = method.bind(gpu(), &stage.inputs()).unwrap();
             let mut encoder = gpu().encoder();
@@ -948,8 +966,8 @@ fn a_row_lit_up_to_a_column_has_its_closed_form() {
             "{splits} splits, lit up to {edge:.2} m, extinction {extinction}: march {:.1e}, bases {:.1e}",
             worst[0], worst[1]
         );
-        // f16 of the picture and f32 of the sums; 8 bits and 64 bases at the ends of the depth range.
-        assert!(worst[0] < 1.5e-3 && worst[1] < 0.03, "{splits}: {worst:?}");
+        // f16 of the picture and f32 of the sums; 8 bits and 128 bases at the ends of the depth range.
+        assert!(worst[0] < 1.5e-3 && worst[1] < 0.01, "{splits}: {worst:?}");
     }
 }
 
@@ -981,8 +999,16 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let light =
         Buffer::uniform(gpu(), &gpu::host_light(linear::Vec3::new(0.0, 1.0, 0.0), matrix, 1.0, Vec3::ONE));
     let medium = Buffer::uniform(gpu(), &Medium::new(0.1, Vec3::ONE, 0.0, 10.0).unwrap());
-    let inputs =
-        Inputs { camera: &camera, light: &light, medium: &medium, depth: &depth, shadow_map: &shadow_map };
+    let inputs = Inputs {
+        camera: &camera,
+        light: &light,
+        medium: &medium,
+        depth: &depth,
+        shadow_map: &shadow_map,
+        shadow_views: None,
+        shadow_maps: None,
+        light_texture: None,
+    };
     let base = Settings {
         bases: 8,
         format: BasisFormat::Rgba16Float,
@@ -1002,7 +1028,8 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let (mut done, mut sum) = (0, 0.0);
     while done < 600 {
         let near = random.magnitude(1e-3, 1.0);
-        let eye = random.direction() * random.between(0.0, if random.unit() < 0.1 { 1e4 } else { 30.0 });
+        let far_away = if random.unit() < 0.1 { 1e4 } else { 30.0 };
+        let eye = random.direction() * random.between(0.0, far_away);
         let seen = if random.unit() < 0.3 {
             orthographic(&mut random, 2.0)
         } else {

@@ -265,7 +265,7 @@ pub fn projective_rows(
     let length = if frustum.orthographic { far - near } else { far };
     let limit = 1.0 / LEAST_NEAR;
     let obliqueness = (length / shortest) as f32;
-    if !(f64::from(obliqueness) <= limit) {
+    if !obliqueness.is_finite() || f64::from(obliqueness) > limit {
         return Err(ProjectiveError::TooOblique { obliqueness, limit: limit as f32 });
     }
 
