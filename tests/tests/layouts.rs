@@ -3,8 +3,8 @@
 //! through encase, and its bytes are looked for at the offset that reflection reports.
 #![allow(clippy::unwrap_used)]
 
-use airlight::core::{Camera, Light, Sky, TonemapParameters};
-use airlight::scattering::{Frame, MarchParameters, Medium};
+use airlight::core::{Camera, Light, ResolveDepthParameters, Sky, TonemapParameters};
+use airlight::scattering::{Frame, MarchParameters, Medium, Reduction};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3};
@@ -140,7 +140,11 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         light: Vec3, azimuth_min: f32, axis_a: Vec3, rows_per_radian: f32,
         axis_b: Vec3, rows: f32, eye: Vec3, wraps: f32,
     });
-    twin!(twins: MarchParameters { steps: u32, offset: f32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: MarchParameters { steps: u32, offset: f32, frame: u32, reserved: u32 });
+    twin!(twins: Reduction { factor: u32, tolerance: f32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: ResolveDepthParameters {
+        extinction: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
+    });
     twins
 }
 

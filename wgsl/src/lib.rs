@@ -88,20 +88,27 @@ modules! {
     core::fourier_basis [],
     core::phase [],
     core::prefix_sum [],
+    core::jitter ["core::finite"],
+    core::ray_depth ["core::camera"],
+    core::resolve_depth [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::single_scatter ["core::phase"],
     scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
+    scattering::upsample [],
 }
 
 passes! {
     core/raster,
     core/scan,
     core/tonemap,
+    core/resolve_depth,
     scattering/slices,
     scattering/rectify,
     scattering/filter,
     scattering/evaluate,
     scattering/march,
+    scattering/reduce_depth,
+    scattering/upsample,
     scattering/composite,
 }
 

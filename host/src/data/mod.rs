@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Input data: meshes, their loaders and the generators of scenes.
+//! Input data: meshes, their loaders and the generators of scenes and of noise.
 //!
 //! Everything is right-handed, y up and in metres; albedos are linear RGB in 0..1. Generators are
 //! deterministic: the same parameters give the same mesh.
 
+mod blue_noise;
 #[cfg(feature = "command")]
 mod load;
 mod mesh;
@@ -12,6 +13,7 @@ mod shapes;
 mod terrain;
 mod tree;
 
+pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
 #[cfg(feature = "command")]
 pub use load::{MeshError, load_mesh, mesh_from_bytes};
 pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};

@@ -9,16 +9,20 @@ mod march;
 mod medium;
 mod prefiltered;
 mod rectification;
+mod resolution;
 mod settings;
+mod upsample;
 
 pub use composite::Composite;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
 pub use prefiltered::{Prefiltered, PrefilteredBound};
 pub use rectification::{Frame, Rectification};
+pub use resolution::{Reduced, Reduction, Resolution, TOLERANCE};
 pub use settings::{
     BasisFormat, ScatteringError, Settings, SettingsError, Weighting, check_size, epipole_near_picture,
 };
+pub use upsample::{Interpolated, Upsample};
 
 use crate::gpu::Gpu;
 use crate::pass::{Pass, PassError};
