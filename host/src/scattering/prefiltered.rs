@@ -66,13 +66,27 @@ impl Prefiltered {
     /// # Errors
     /// [`PassError`].
     pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<PrefilteredBound, PassError> {
+        self.bind_reduced(gpu, inputs, inputs)
+    }
+
+    /// Binds the inputs of the full picture to the rectification, and those of a reduced one
+    /// ([`super::Reduced::inputs`]) to the evaluation.
+    ///
+    /// # Errors
+    /// [`PassError`].
+    pub fn bind_reduced(
+        &self,
+        gpu: &Gpu,
+        inputs: &Inputs<'_>,
+        reduced: &Inputs<'_>,
+    ) -> Result<PrefilteredBound, PassError> {
         let resources = [
-            ("camera", inputs.camera.into()),
+            ("camera", reduced.camera.into()),
             ("light", inputs.light.into()),
             ("medium", inputs.medium.into()),
             ("frame", (&self.rectification.frame).into()),
             ("slices", (&self.rectification.slices).into()),
-            ("depth", inputs.depth.into()),
+            ("depth", reduced.depth.into()),
             ("shadow_map", inputs.shadow_map.into()),
             ("rectified", (&self.rectification.rectified).into()),
             ("bases", (&self.bases).into()),
