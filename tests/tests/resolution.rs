@@ -90,8 +90,10 @@ fn reduced_cameras_look_through_the_centres_of_evaluated_pixels() {
             };
             let full = unproject(&camera, ndc(at.map(|a| a * factor as usize), viewport));
             let found = unproject(&reduced, ndc(at, size));
-            // Homogeneous points, equal with their scale: rays and distances are the same.
-            let scale = full.iter().map(|x| x.abs()).fold(0.0, f64::max).max(1.0);
+            // Homogeneous points, equal with their scale: rays and distances are the same, as far as f32 holds
+            // the matrix.
+            let scale =
+                camera.world_from_clip.to_cols_array().map(|x| f(x).abs()).into_iter().fold(1.0, f64::max);
             worst = full.iter().zip(found).map(|(a, b)| (a - b).abs() / scale).fold(worst, f64::max);
             // The matrices stay each other's inverses, as far as they were.
             let product = gpu::matrix(reduced.clip_from_world).apply(found);
@@ -432,7 +434,8 @@ fn upsampled_radiance_follows_from_distance_and_phase() {
         march.scattered.read(gpu()).unwrap()
     };
     for (found, lit) in found.chunks_exact(4).zip(march.chunks_exact(4)) {
-        assert_eq!(found[3], 0.625);
+        // One unit in the last place of f16: targets may be rounded towards zero.
+        assert!((found[3] - 0.625).abs() < 5e-4, "{found:?}");
         for (a, b) in found[..3].iter().zip(lit) {
             assert!((f(*a) - 0.625 * f(*b) / f(lit[3])).abs() <= 2e-3 * f(*b), "{found:?} {lit:?}");
         }
