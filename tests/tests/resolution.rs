@@ -371,7 +371,10 @@ fn upsampling_is_joint_bilateral() {
         let depth = gpu::texture(size, R32Float, &depths);
         let [low_width, low_height] = [width.div_ceil(factor), height.div_ceil(factor)];
         let values: Vec<f32> = (0..low_width * low_height)
-            .flat_map(|_| [0.0, 0.0, 0.0, (random.unit() * 1024.0).floor() as f32 / 1024.0])
+            .flat_map(|_| {
+                let visibility = (random.unit() * 1024.0).floor() as f32 / 1024.0;
+                [0.0, 0.0, 0.0, if random.unit() < 0.02 { f32::NAN } else { visibility }]
+            })
             .collect();
         let found = bench.upsampled(&camera, resolution, &depth, &values, Interpolated::Visibility);
         for y in 0..height {
@@ -391,6 +394,7 @@ fn upsampling_is_joint_bilateral() {
                     let off = (other - own) / (own * f(TOLERANCE));
                     let k = 1.0 / (1.0 + off * off);
                     let value = f(values[4 * (cy * low_width + cx) + 3]);
+                    let value = if value.is_finite() { value } else { 0.0 };
                     let b = share(x, dx) * share(y, dy);
                     near += b * k;
                     near_sum += b * k * value;
