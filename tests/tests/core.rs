@@ -53,7 +53,7 @@ const COVERED: [(&str, &[&str]); 10] = [
     ),
     ("light", &["shadow_position", "shadow_point"]),
     ("phase", &["isotropic", "henyey_greenstein"]),
-    ("prefix_sum", &["row_weights", "row_weights_next", "running_mean"]),
+    ("prefix_sum", &["row_weights", "row_weights_next", "running_mean", "one_minus_exp", "prefix_weight"]),
     ("jitter", &["gradient_noise_offset", "blue_noise_offset"]),
     ("ray_depth", &["ray_depth", "distance_on_ray", "depth_on_ray"]),
     ("resolve_depth", &["averaging_extinction", "distance_of_transmittance"]),
@@ -737,13 +737,15 @@ fn colours_follow_their_closed_forms() {
 #[test]
 fn absorption_and_in_scattering_keep_their_precision() {
     let probe = Probe {
-        head: "#import airlight::scattering::single_scatter::{Medium, one_minus_exp, transmittance, in_scattered}",
+        head: "#import airlight::scattering::single_scatter::{Medium, transmittance, in_scattered}
+               #import airlight::core::prefix_sum::{one_minus_exp, prefix_weight}",
         body: "let medium = Medium(vec3<f32>(0.9), input(0u), input(1u), 100.0, 0.0, 0.0);
                output(0u, one_minus_exp(input(0u)));
                output(1u, transmittance(input(0u)));
-               output(2u, in_scattered(medium, vec3<f32>(3.0, 2.0, 1.0), input(2u), input(3u), 0.75).y);",
+               output(2u, in_scattered(medium, vec3<f32>(3.0, 2.0, 1.0), input(2u), input(3u), 0.75).y);
+               output(3u, prefix_weight(input(0u), 10.0 * input(3u)));",
         inputs: 4,
-        outputs: 3,
+        outputs: 4,
     };
     let mut random = Random(41);
     let mut inputs = Vec::new();
@@ -754,14 +756,18 @@ fn absorption_and_in_scattering_keep_their_precision() {
         inputs.extend([x, g, random.between(-1.0, 1.0) as f32, random.magnitude(0.01, 100.0) as f32]);
     }
     let found = probe.run(&inputs);
-    let (mut absorbed, mut passed, mut radiance) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for (input, found) in inputs.chunks_exact(4).zip(found.chunks_exact(3)) {
+    let (mut absorbed, mut passed, mut radiance, mut prefix) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+    for (input, found) in inputs.chunks_exact(4).zip(found.chunks_exact(4)) {
         let [x, g, cosine, distance] = [0, 1, 2, 3].map(|i| f(input[i]));
         // Below 1e-37 the number itself is at the end of f32.
         if x > 1e-37 {
             absorbed = absorbed.max((f(found[0]) / -(-x).exp_m1() - 1.0).abs());
         }
         passed = passed.max((f(found[1]) - (-x).exp()).abs());
+        // In units of the first of equal texels of the optical depth x; up to 1000 texels.
+        let texels = 10.0 * distance;
+        let weight = if x == 0.0 { texels } else { (-x * texels).exp_m1() / (-x).exp_m1() };
+        prefix = prefix.max((f(found[3]) / weight - 1.0).abs());
         let medium = scattering::Medium { extinction: x, albedo: f(0.9), g, distance_limit: 100.0 };
         let light = scattering::Light { direction: Vec3::new(0.0, 1.0, 0.0), radiance: [3.0, 2.0, 1.0] };
         let direction = Vec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
@@ -774,6 +780,8 @@ fn absorption_and_in_scattering_keep_their_precision() {
     }
     hold("one_minus_exp, relative", absorbed, 1e-6);
     hold("transmittance", passed, 3e-7);
+    // Where a texel's optical depth is below 1e-6, texels count alike.
+    hold("prefix_weight, relative", prefix, 6e-4);
     hold("in_scattered, relative", radiance, 5e-6);
     assert_eq!(found[0..3], [0.0, 1.0, 0.0], "no medium scatters nothing");
 }

@@ -7,7 +7,7 @@ use airlight::core::{Camera, Light, ResolveDepthParameters, Sky, TonemapParamete
 use airlight::scattering::{Frame, MarchParameters, Medium, Reduction};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
@@ -75,6 +75,19 @@ impl Sentinel for Vec3 {
     }
 }
 
+impl Sentinel for Vec4 {
+    const TYPE: &'static str = "vec4<f32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1.5, 2.5, 3.5, 4.5)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits()), (12, 4.5_f32.to_bits())]
+    }
+}
+
 impl Sentinel for Mat4 {
     const TYPE: &'static str = "mat4x4<f32>";
     fn zero() -> Self {
@@ -139,6 +152,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: Frame {
         light: Vec3, azimuth_min: f32, axis_a: Vec3, rows_per_radian: f32,
         axis_b: Vec3, rows: f32, eye: Vec3, wraps: f32,
+        ray_light: Vec3, reserved_a: f32, ray_a: Vec3, reserved_b: f32, ray_b: Vec3, reserved_c: f32, ray_scale: Vec4,
     });
     twin!(twins: MarchParameters { steps: u32, offset: f32, frame: u32, reserved: u32 });
     twin!(twins: Reduction { factor: u32, tolerance: f32, reserved_a: u32, reserved_b: u32 });

@@ -108,6 +108,13 @@ fn reduced_cameras_look_through_the_centres_of_evaluated_pixels() {
     assert!(worst < 1e-6 && round_trip < 2e-3, "{worst:e} {round_trip:e}");
 }
 
+fn rectified(inputs: &Inputs<'_>) -> Rectification {
+    let map = Rectification::new(gpu(), shaders(), [512, 512]).unwrap();
+    let bound = map.bind(gpu(), inputs).unwrap();
+    submit(|encoder| map.record(encoder, &bound));
+    map
+}
+
 /// A scene of the gallery with its rectified map.
 struct Case {
     stage: Stage,
@@ -121,10 +128,28 @@ impl Case {
         let scene = scenes::scene(name).unwrap().unwrap();
         let Setting { view, .. } = scene.setting();
         let stage = Stage::new(gpu(), gpu::raster(), &scene.setting(), size, [1024, 1024]).unwrap();
-        let map = Rectification::new(gpu(), shaders(), [512, 512]).unwrap();
-        let bound = map.bind(gpu(), &stage.inputs()).unwrap();
-        submit(|encoder| map.record(encoder, &bound));
+        let map = rectified(&stage.inputs());
         Self { stage, map, view, size }
+    }
+
+    /// The exact picture over a map that was rectified for the camera reduced by `factor`.
+    fn exact(&self, map: &Rectification, factor: u32) -> reference::Picture {
+        let [width, height] = self.size.map(|side| side as usize);
+        let camera = gpu::reference_camera(&self.view, self.size);
+        let reduced = self.stage.camera.reduced(factor);
+        let reduced = ReferenceCamera::from_matrix(gpu::matrix(reduced.clip_from_world), 1.0).unwrap();
+        let limit = self.stage.medium.distance_limit;
+        let rectification = gpu::read_back(&reduced, self.stage.light.direction, limit, map);
+        let depth = self.stage.pictures.depth.read(gpu()).unwrap();
+        let scene = reference::Scene {
+            camera: &camera,
+            light: gpu::reference_light(&self.stage.light),
+            medium: gpu::reference_medium(&self.stage.medium),
+            depth: &depth,
+            width,
+            height,
+        };
+        reference::picture(&scene, &rectification, &map.rectified.read(gpu()).unwrap(), 1)
     }
 
     fn march(&self, inputs: &Inputs<'_>, along: &Along<'_>, viewport: [u32; 2]) -> March {
@@ -177,7 +202,7 @@ fn evaluated_pixels_are_those_of_the_full_picture() {
     // A size that is no multiple of the factors.
     let case = Case::new("foliage", [479, 269]);
     let inputs = case.stage.inputs();
-    let along = Along::RowSteps { map: &case.map, steps: 256 };
+    let along = Along::ShadowMap { steps: 256 };
     let full = case.march(&inputs, &along, case.size).scattered.read(gpu()).unwrap();
     let depth = case.stage.pictures.depth.read(gpu()).unwrap();
     for resolution in [Resolution::Half, Resolution::Quarter] {
@@ -217,12 +242,15 @@ fn upsampled_radiance_is_that_of_the_exact_picture() {
     {
         let case = Case::new(name, [959, 539]);
         let inputs = case.stage.inputs();
-        let exact = average_radiance(&gpu::exact_picture(&case.stage, &case.view, &case.map, 1));
+        let exact = average_radiance(&case.exact(&case.map, 1));
         let along = Along::RowSteps { map: &case.map, steps: 512 };
         let full = case.march(&inputs, &along, case.size).scattered.read(gpu()).unwrap();
         let baseline = error::relative_rmse(&channels(&full, 0..3), &exact);
         for (resolution, budget) in [Resolution::Half, Resolution::Quarter].into_iter().zip(budgets) {
             let reduced = case.reduced(resolution);
+            let map = rectified(&reduced.inputs(&inputs));
+            let exact = average_radiance(&case.exact(&map, resolution.factor()));
+            let along = Along::RowSteps { map: &map, steps: 512 };
             let march = case.march(&reduced.inputs(&inputs), &along, reduced.viewport());
             let of = |interpolated| {
                 let picture = case.upsampled(&reduced, &march.scattered, interpolated);
@@ -245,21 +273,20 @@ fn prefiltered_pictures_are_upsampled_as_well() {
     let case = Case::new("foliage", [960, 540]);
     let inputs = case.stage.inputs();
     let settings = Settings { map: [512, 512], epipole_march: false, ..Settings::default() };
-    let radiance = |viewport: [u32; 2], reduced: Option<&Reduced>| {
+    let evaluated = |viewport: [u32; 2], inputs: &Inputs<'_>| {
         let method = Prefiltered::new(gpu(), shaders(), settings, viewport).unwrap();
-        let bound = match reduced {
-            Some(reduced) => method.bind_reduced(gpu(), &inputs, &reduced.inputs(&inputs)).unwrap(),
-            None => method.bind(gpu(), &inputs).unwrap(),
-        };
+        let bound = method.bind(gpu(), inputs).unwrap();
         submit(|encoder| method.record(encoder, &bound));
-        method.scattered
+        method
     };
-    let exact = gpu::exact_picture(&case.stage, &case.view, &case.map, 1).radiance();
-    let full = error::relative_rmse(&channels(&radiance(case.size, None).read(gpu()).unwrap(), 0..3), &exact);
+    let method = evaluated(case.size, &inputs);
+    let exact = case.exact(&method.rectification, 1).radiance();
+    let full = error::relative_rmse(&channels(&method.scattered.read(gpu()).unwrap(), 0..3), &exact);
     for resolution in [Resolution::Half, Resolution::Quarter] {
         let reduced = case.reduced(resolution);
-        let scattered = radiance(reduced.viewport(), Some(&reduced));
-        let picture = case.upsampled(&reduced, &scattered, Interpolated::Visibility);
+        let method = evaluated(reduced.viewport(), &reduced.inputs(&inputs));
+        let picture = case.upsampled(&reduced, &method.scattered, Interpolated::Visibility);
+        let exact = case.exact(&method.rectification, resolution.factor()).radiance();
         let found = error::relative_rmse(&channels(&picture, 0..3), &exact);
         println!("prefiltered 1/{}: {found:.4}, full {full:.4}", resolution.factor());
         assert!(found <= full + 0.01, "{resolution:?}: {found}, full {full}");

@@ -31,3 +31,18 @@ fn row_weights_next(current: RowWeights) -> RowWeights {
 fn running_mean(mean: vec4<f32>, value: vec4<f32>, weights: RowWeights) -> vec4<f32> {
     return mean + (value - mean) * (weights.weight / weights.total);
 }
+
+/// 1 - exp(-x) for x >= 0, without cancellation for small x. Relative error below 1e-6.
+fn one_minus_exp(x: f32) -> f32 {
+    const third: f32 = 1.0 / 3.0;
+    const sixth: f32 = 1.0 / 6.0;
+    let series = x * (1.0 - x * 0.5 * (1.0 - x * third * (1.0 - x * 0.25 * (1.0 - x * 0.2 * (1.0 - x * sixth)))));
+    return select(1.0 - exp(-x), series, x < 0.3);
+}
+
+/// Weight of the first `texels` texels of a row, fractional, in units of the first texel's. `optical_step`: optical
+/// depth of one texel; zero, or little, gives the number of texels.
+fn prefix_weight(optical_step: f32, texels: f32) -> f32 {
+    let first = one_minus_exp(optical_step);
+    return select(texels, one_minus_exp(optical_step * texels) / max(first, 1e-30), first > 1e-6);
+}

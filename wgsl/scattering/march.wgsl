@@ -7,7 +7,7 @@
 
 #import airlight::core::finite::finite_or
 #import airlight::core::light::{Light, shadow_position}
-#import airlight::scattering::single_scatter::one_minus_exp
+#import airlight::core::prefix_sum::{one_minus_exp, prefix_weight}
 
 /// Mean visibility over the first `texels` texels of a row of a rectified map, weighted by
 /// transmittance. `depth`: of the ray, 0..1; `texels`: fractional, clamped to the width of the map;
@@ -29,8 +29,7 @@ fn march_row(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, optical_st
         let lit = textureLoad(map, vec2<u32>(left - 1u, row), 0).x >= depth;
         sum = sum * ratio + select(0.0, 1.0, lit);
     }
-    let total = select(covered, one_minus_exp(optical_step * covered) / scale, scale > 1e-6);
-    return clamp(sum / total, 0.0, 1.0);
+    return clamp(sum / prefix_weight(optical_step, covered), 0.0, 1.0);
 }
 
 /// Plain mean visibility of a view ray over `steps` equal steps along a row of a rectified map: one

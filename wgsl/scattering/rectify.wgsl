@@ -9,7 +9,9 @@
 // note: the same up to a factor per slice: the texel is the same.
 // note: The whole convention, with the range of rows, is docs/src/rectification.md.
 
-#import airlight::core::camera::{Camera, view_ray, side_normal, forward_direction, far_plane_distance}
+#import airlight::core::camera::{
+    Camera, view_ray, side_normal, forward_direction, far_plane_distance, matrix_row
+}
 #import airlight::core::fourier_basis::{GUARD, guarded}
 
 const PI: f32 = 3.141592653589793;
@@ -23,7 +25,7 @@ const SAME_PLANE: f32 = 1e-4;
 /// The least cosine k of Eq. 4.10 that takes part in the choice of the reference ray.
 const LEAST_REFERENCE: f32 = 0.1;
 
-/// Axes around the light and the range of the slices. 64 bytes.
+/// Axes around the light, the range of the slices, and the view rays in these axes. 128 bytes.
 struct Frame {
     /// Unit vector TOWARDS the light.
     light: vec3<f32>,
@@ -41,6 +43,17 @@ struct Frame {
     eye: vec3<f32>,
     /// 1 where the rows go round the full circle and wrap, 0 elsewhere.
     wraps: f32,
+    /// The view ray through ndc, times (x, y, 1): its part towards the light. Any length, the same for all four.
+    ray_light: vec3<f32>,
+    reserved_a: f32,
+    /// Its part along axis_a.
+    ray_a: vec3<f32>,
+    reserved_b: f32,
+    /// Its part along axis_b.
+    ray_b: vec3<f32>,
+    reserved_c: f32,
+    /// Times (x, y, depth, 1): what its length is divided by for the distance of the surface at that depth.
+    ray_scale: vec4<f32>,
 }
 
 /// Bounds of one slice.
@@ -61,8 +74,12 @@ struct EpipolarRay {
     angle: f32,
     /// Its sine: metres of radius per metre of distance.
     sine: f32,
+    /// Its cosine.
+    cosine: f32,
     /// Row, fractional; row j is at the value j.
     row: f32,
+    /// Length of the ray in metres, up to the surface or the limit.
+    distance: f32,
 }
 
 /// The frame of a perspective camera for a light. `light`: unit vector towards the light; `rows`: height of the map, at least 1.
@@ -84,8 +101,19 @@ fn epipolar_frame(camera: Camera, light: vec3<f32>, rows: u32) -> Frame {
         nearest = min(nearest, towards);
         farthest = max(farthest, towards);
     }
+    // The ray through ndc is the far point minus the eye, in homogeneous coordinates: affine in ndc.
+    let column_x = eye_relative(camera, camera.world_from_clip[0]);
+    let column_y = eye_relative(camera, camera.world_from_clip[1]);
+    let constant = eye_relative(camera, camera.world_from_clip[2] * camera.far_depth + camera.world_from_clip[3]);
+    var frame = Frame(
+        light, -PI, axis_a, f32(rows) / (2.0 * PI), axis_b, f32(rows), camera.eye, 1.0,
+        vec3<f32>(dot(column_x, light), dot(column_y, light), dot(constant, light)), 0.0,
+        vec3<f32>(dot(column_x, axis_a), dot(column_y, axis_a), dot(constant, axis_a)), 0.0,
+        vec3<f32>(dot(column_x, axis_b), dot(column_y, axis_b), dot(constant, axis_b)), 0.0,
+        matrix_row(camera.world_from_clip, 3u)
+    );
     if nearest > -INSIDE_MARGIN || farthest < INSIDE_MARGIN {
-        return Frame(light, -PI, axis_a, f32(rows) / (2.0 * PI), axis_b, f32(rows), camera.eye, 1.0);
+        return frame;
     }
 
     var azimuth_min = PI;
@@ -97,8 +125,15 @@ fn epipolar_frame(camera: Camera, light: vec3<f32>, rows: u32) -> Frame {
         azimuth_min = min(azimuth_min, azimuth);
         azimuth_max = max(azimuth_max, azimuth);
     }
-    let rows_per_radian = (f32(rows) - 1.0) / max(azimuth_max - azimuth_min, 1e-6);
-    return Frame(light, azimuth_min, axis_a, rows_per_radian, axis_b, f32(rows), camera.eye, 0.0);
+    frame.rows_per_radian = (f32(rows) - 1.0) / max(azimuth_max - azimuth_min, 1e-6);
+    frame.azimuth_min = azimuth_min;
+    frame.wraps = 0.0;
+    return frame;
+}
+
+/// A homogeneous point as a vector from the eye, times its w.
+fn eye_relative(camera: Camera, point: vec4<f32>) -> vec3<f32> {
+    return point.xyz - camera.eye * point.w;
 }
 
 /// Azimuth of the middle of `row`, radians.
@@ -150,7 +185,6 @@ fn slice_bounds(camera: Camera, frame: Frame, azimuth: f32, distance_limit: f32)
     let right_angle = 0.5 * PI;
     let widest = clamp(right_angle, angle_min, angle_max);
     let sine_max = max(sin(widest), 1e-4);
-    let sine_min = min(sin(angle_min), sin(angle_max));
     let limit = distance_limit * sine_max;
 
     // On a half-plane the far plane's radius is monotone in the angle: its greatest value is at a bound.
@@ -162,8 +196,23 @@ fn slice_bounds(camera: Camera, frame: Frame, azimuth: f32, distance_limit: f32)
         far_radius(far, limit, along_light, along_radius, angle_min),
         far_radius(far, limit, along_light, along_radius, angle_max)
     );
-    let reference = sqrt(max(sine_min, LEAST_REFERENCE) * max(sine_max, LEAST_REFERENCE));
+    let reference = reference_optimum(angle_min, angle_max);
     return Slice(angle_min, angle_max, clamp(radius, 1e-6 * distance_limit, limit), reference);
+}
+
+/// k of the reference ray by the optimum of Eq. 4.12: the geometric mean of the least and the greatest sine of
+/// the slice, both clamped from below.
+fn reference_optimum(angle_min: f32, angle_max: f32) -> f32 {
+    let widest = sin(clamp(0.5 * PI, angle_min, angle_max));
+    let narrowest = min(sin(angle_min), sin(angle_max));
+    return sqrt(max(narrowest, LEAST_REFERENCE) * max(widest, LEAST_REFERENCE));
+}
+
+/// k of the reference ray by the bisectrix of the rays that cross a texel fastest and slowest.
+fn reference_bisectrix(angle_min: f32, angle_max: f32) -> f32 {
+    let widest = clamp(0.5 * PI, angle_min, angle_max);
+    let narrowest = select(angle_max, angle_min, sin(angle_min) < sin(angle_max));
+    return max(sin(0.5 * (widest + narrowest)), LEAST_REFERENCE);
 }
 
 /// A slice as one texel of an rgba32float texture.
@@ -176,18 +225,27 @@ fn slice_from_texel(texel: vec4<f32>) -> Slice {
     return Slice(texel.x, texel.y, texel.z, texel.w);
 }
 
-/// Epipolar coordinates of the view ray with the unit `direction`.
-fn epipolar_ray(frame: Frame, direction: vec3<f32>) -> EpipolarRay {
-    let height = dot(direction, frame.light);
-    let a = dot(direction, frame.axis_a);
-    let b = dot(direction, frame.axis_b);
-    let sine = length(vec2<f32>(a, b));
+/// The view ray through `ndc`, up to the surface with the depth-buffer value `depth` and at most `limit` metres long.
+fn epipolar_ray(frame: Frame, ndc: vec2<f32>, depth: f32, limit: f32) -> EpipolarRay {
+    let at = vec3<f32>(ndc, 1.0);
+    let towards = dot(frame.ray_light, at);
+    let a = dot(frame.ray_a, at);
+    let b = dot(frame.ray_b, at);
+    let radial = sqrt(a * a + b * b);
+    let along = sqrt(radial * radial + towards * towards);
+    let inverse = 1.0 / max(along, 1e-30);
     // At the light itself the azimuth is free; atan2(0, 0) is not.
-    let azimuth = select(atan2(b, a), 0.0, sine < 1e-12);
+    let azimuth = select(atan2(b, a), 0.0, radial < 1e-12 * along);
     let row = (azimuth - frame.azimuth_min) * frame.rows_per_radian;
     // A wrapping row may lie at `rows` itself: the sampler repeats.
     let last = select(frame.rows - 1.0, frame.rows, frame.wraps > 0.0);
-    return EpipolarRay(atan2(sine, height), sine, clamp(row, 0.0, last));
+    // along / scale, without dividing by a scale that is zero or has rounded below it.
+    let scale = dot(frame.ray_scale, vec4<f32>(ndc, depth, 1.0));
+    let beyond = along >= limit * scale;
+    let distance = select(along / select(scale, 1.0, beyond), limit, beyond);
+    return EpipolarRay(
+        atan2(radial, towards), radial * inverse, towards * inverse, clamp(row, 0.0, last), distance
+    );
 }
 
 /// The row nearest to a fractional `row`, always inside the map.
@@ -214,4 +272,12 @@ fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
 /// the light ray at `radius` metres.
 fn depth_from_blocker(slice: Slice, radius: f32, height: f32) -> f32 {
     return depth_from_angle(slice, atan2(radius, height));
+}
+
+/// The depth warp of thesis 4.5: depths between the guards stretched by a square root, so that rays near the light (the
+/// least angles of a slice) differ by more. Monotone: the same visibility, resolved otherwise.
+fn warped_depth(depth: f32) -> f32 {
+    let range = 1.0 - 2.0 * GUARD;
+    let unit = clamp((depth - GUARD) / range, 0.0, 1.0);
+    return select(depth, GUARD + range * sqrt(unit), depth > GUARD && depth < 1.0 - GUARD);
 }

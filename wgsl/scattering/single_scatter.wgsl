@@ -7,6 +7,7 @@
 // note: Listing 4.4 prints exp(disToSurface * sigma): the exponent is negative.
 
 #import airlight::core::phase::henyey_greenstein
+#import airlight::core::prefix_sum::one_minus_exp
 
 /// A homogeneous medium. 32 bytes.
 struct Medium {
@@ -25,12 +26,6 @@ struct Medium {
 /// Transmittance over `optical_depth`, 0..1.
 fn transmittance(optical_depth: f32) -> f32 {
     return exp(-max(optical_depth, 0.0));
-}
-
-/// 1 - exp(-x) for x >= 0, without cancellation for small x. Relative error below 1e-6.
-fn one_minus_exp(x: f32) -> f32 {
-    let series = x * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0)))));
-    return select(1.0 - exp(-x), series, x < 0.3);
 }
 
 /// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or

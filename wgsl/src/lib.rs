@@ -92,8 +92,9 @@ modules! {
     core::ray_depth ["core::camera"],
     core::resolve_depth [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
-    scattering::single_scatter ["core::phase"],
-    scattering::march ["core::finite", "core::light", "scattering::single_scatter"],
+    scattering::rows [],
+    scattering::single_scatter ["core::phase", "core::prefix_sum"],
+    scattering::march ["core::finite", "core::light", "core::prefix_sum"],
     scattering::upsample [],
 }
 

@@ -70,7 +70,7 @@ impl From<crate::scattering::SettingsError> for CommandError {
     fn from(error: crate::scattering::SettingsError) -> Self {
         use crate::scattering::SettingsError as E;
         let flag = match &error {
-            E::Bases(_) | E::BasesPerThread(_) => "--bases",
+            E::Bases(_) | E::BasesPerThread(_) | E::Regions(_) => "--bases",
             E::Size { what, .. } => match *what {
                 "a picture" => "--size",
                 "a shadow map" => "--shadow-map",

@@ -20,7 +20,8 @@ pub use prefiltered::{Prefiltered, PrefilteredBound};
 pub use rectification::{Frame, Rectification};
 pub use resolution::{Reduced, Reduction, Resolution, TOLERANCE};
 pub use settings::{
-    BasisFormat, ScatteringError, Settings, SettingsError, Weighting, check_size, epipole_near_picture,
+    BasisFormat, Filtering, Reference, ScatteringError, Settings, SettingsError, Start, Weighting,
+    check_size, epipole_near_picture,
 };
 pub use upsample::{Interpolated, Upsample};
 

@@ -52,7 +52,7 @@ impl Prefiltered {
         let evaluate = settings.evaluate_definitions();
         Ok(Self {
             settings,
-            rectification: Rectification::new(gpu, shaders, settings.map)?,
+            rectification: Rectification::from_settings(gpu, shaders, &settings)?,
             filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
             evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate", &evaluate, "fragment_evaluate")?,
             sampler: Sampler::rows(gpu),
@@ -66,27 +66,13 @@ impl Prefiltered {
     /// # Errors
     /// [`PassError`].
     pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<PrefilteredBound, PassError> {
-        self.bind_reduced(gpu, inputs, inputs)
-    }
-
-    /// Binds the inputs of the full picture to the rectification, and those of a reduced one
-    /// ([`super::Reduced::inputs`]) to the evaluation.
-    ///
-    /// # Errors
-    /// [`PassError`].
-    pub fn bind_reduced(
-        &self,
-        gpu: &Gpu,
-        inputs: &Inputs<'_>,
-        reduced: &Inputs<'_>,
-    ) -> Result<PrefilteredBound, PassError> {
         let resources = [
-            ("camera", reduced.camera.into()),
+            ("camera", inputs.camera.into()),
             ("light", inputs.light.into()),
             ("medium", inputs.medium.into()),
             ("frame", (&self.rectification.frame).into()),
             ("slices", (&self.rectification.slices).into()),
-            ("depth", reduced.depth.into()),
+            ("depth", inputs.depth.into()),
             ("shadow_map", inputs.shadow_map.into()),
             ("rectified", (&self.rectification.rectified).into()),
             ("bases", (&self.bases).into()),
@@ -113,9 +99,9 @@ impl Prefiltered {
 
     /// Records the filter of the bases (thesis 4.3.3, Listings 4.1 to 4.3).
     pub fn record_filter(&self, encoder: &mut wgpu::CommandEncoder, bound: &PrefilteredBound) {
-        let Settings { bases, bases_per_thread, map, .. } = self.settings;
+        let Settings { bases, bases_per_thread, map, regions, .. } = self.settings;
         let chunks = bases.div_ceil(bases_per_thread.min(bases));
-        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, 1]);
+        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, regions]);
     }
 
     /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The rectified shadow map (thesis 4.4).
 
-use super::{Inputs, ScatteringError, check_size};
+use super::{Inputs, ScatteringError, Settings, check_size};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use encase::ShaderType;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use wgpu::TextureFormat;
 
 /// The uniform `Frame` of `scattering/rectify`, which the pass `slices` writes.
@@ -29,6 +29,20 @@ pub struct Frame {
     pub eye: Vec3,
     /// 1 where rows wrap.
     pub wraps: f32,
+    /// Towards the light: what the view ray through ndc has, times (x, y, 1).
+    pub ray_light: Vec3,
+    /// Padding.
+    pub reserved_a: f32,
+    /// Along axis_a.
+    pub ray_a: Vec3,
+    /// Padding.
+    pub reserved_b: f32,
+    /// Along axis_b.
+    pub ray_b: Vec3,
+    /// Padding.
+    pub reserved_c: f32,
+    /// Scale of a ray's length, times (x, y, depth, 1).
+    pub ray_scale: Vec4,
 }
 
 /// The rectified shadow map: slices, their frame, and the map itself.
@@ -44,15 +58,25 @@ pub struct Rectification {
 }
 
 impl Rectification {
-    /// Builds the passes and the textures for a map of `map` columns and rows.
+    /// Builds the passes and the textures for a map of `map` columns and rows, by the default settings.
     ///
     /// # Errors
     /// [`ScatteringError`].
     pub fn new(gpu: &Gpu, shaders: &Shaders, map: [u32; 2]) -> Result<Self, ScatteringError> {
+        Self::from_settings(gpu, shaders, &Settings { map, ..Settings::default() })
+    }
+
+    /// Builds the passes and the textures by the settings.
+    ///
+    /// # Errors
+    /// [`ScatteringError`].
+    pub fn from_settings(gpu: &Gpu, shaders: &Shaders, settings: &Settings) -> Result<Self, ScatteringError> {
+        let map = settings.map;
         check_size(gpu, "a rectified map", map)?;
+        let compute = |pass, definitions| Pass::compute_with(gpu, shaders, pass, &definitions);
         Ok(Self {
-            slices_pass: Pass::compute(gpu, shaders, "scattering/slices", "default")?,
-            rectify_pass: Pass::compute(gpu, shaders, "scattering/rectify", "default")?,
+            slices_pass: compute("scattering/slices", settings.slices_definitions())?,
+            rectify_pass: compute("scattering/rectify", settings.rectify_definitions())?,
             frame: Buffer::storage(gpu, u64::from(Frame::min_size())),
             slices: Texture::storage(gpu, [map[1], 1], TextureFormat::Rgba32Float),
             rectified: Texture::storage(gpu, map, TextureFormat::R32Float),

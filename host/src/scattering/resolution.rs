@@ -81,8 +81,9 @@ impl Camera {
 
 /// A picture of every second or fourth pixel: its camera and its depth buffer.
 ///
-/// [`crate::scattering::March`] and the evaluation of [`crate::scattering::Prefiltered`] run at
-/// [`Reduced::viewport`] with [`Reduced::inputs`]; [`super::Upsample`] makes the full picture of the result.
+/// [`super::March`] and [`super::Prefiltered`] run at [`Reduced::viewport`] with [`Reduced::inputs`], their
+/// rectification included: a frame holds the rays of the camera that it was made for. [`super::Upsample`] makes
+/// the full picture of the result.
 pub struct Reduced {
     pass: Pass,
     resolution: Resolution,

@@ -16,6 +16,9 @@ pub enum SettingsError {
     /// Bases a thread.
     #[error("{0} bases a thread are impossible: the number must be a multiple of 4 from 4 to 128")]
     BasesPerThread(u32),
+    /// Regions of a row.
+    #[error("{0} regions a row are impossible: the number must be from 1 to 8")]
+    Regions(u32),
     /// Size of the rectified map or the picture.
     #[error("{what} of {width}x{height} is impossible: both must lie between 1 and {limit} on this device")]
     Size {
@@ -71,6 +74,36 @@ pub enum Weighting {
     Average,
 }
 
+/// How the filtered bases are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Filtering {
+    /// Bilinear: smooth across rows and along them; free on a GPU.
+    #[default]
+    Linear,
+    /// The nearest texel, as a march reads its map: half the cost of a read on a software adapter.
+    Nearest,
+}
+
+/// How the reference ray of a slice is chosen, whose weights all rays of the slice share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Reference {
+    /// The optimum of Eq. 4.12, clamped.
+    #[default]
+    Optimum,
+    /// The bisectrix.
+    Bisectrix,
+}
+
+/// Where rays, and the medium, begin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Start {
+    /// At the eye.
+    #[default]
+    Eye,
+    /// At the near plane: costs a second read of the bases, and amplifies what they are stored with.
+    NearPlane,
+}
+
 /// What the prefiltered method can be told.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -86,8 +119,20 @@ pub struct Settings {
     pub window: bool,
     /// March around the light's place in the picture.
     pub epipole_march: bool,
+    /// The depth warp of thesis 4.5 instead of that march, to compare.
+    pub depth_warp: bool,
     /// Bases that a thread of the filter takes.
     pub bases_per_thread: u32,
+    /// Regions of a row that are filtered in parallel, 1 to 8; each before the last costs a read a pixel.
+    pub regions: u32,
+    /// How the bases are read.
+    pub filtering: Filtering,
+    /// The reference ray of a slice.
+    pub reference: Reference,
+    /// Where rays begin.
+    pub start: Start,
+    /// New sines for every basis instead of the recurrence, to compare.
+    pub direct_sines: bool,
 }
 
 impl Default for Settings {
@@ -99,17 +144,27 @@ impl Default for Settings {
             weighting: Weighting::default(),
             window: true,
             epipole_march: true,
+            depth_warp: false,
             bases_per_thread: 8,
+            regions: 1,
+            filtering: Filtering::default(),
+            reference: Reference::default(),
+            start: Start::default(),
+            direct_sines: false,
         }
     }
 }
 
 impl Settings {
     /// The defaults for an adapter: a software adapter has no idle lanes to fill, so that one thread takes
-    /// all bases of a row and computes its sines once; a GPU wants more threads.
+    /// all bases of a row and computes its sines once; a GPU wants more threads. A software adapter filters
+    /// textures by arithmetic, so that it reads the nearest texel.
     pub fn tuned(gpu: &Gpu) -> Self {
-        let software = gpu.adapter.device_type == wgpu::DeviceType::Cpu;
-        Self { bases_per_thread: if software { 32 } else { 8 }, ..Self::default() }
+        if gpu.adapter.device_type == wgpu::DeviceType::Cpu {
+            Self { bases_per_thread: 32, filtering: Filtering::Nearest, ..Self::default() }
+        } else {
+            Self::default()
+        }
     }
 
     /// Checks the settings for a device.
@@ -124,36 +179,53 @@ impl Settings {
         if per_thread == 0 || !per_thread.is_multiple_of(4) || per_thread > 128 {
             return Err(SettingsError::BasesPerThread(per_thread));
         }
+        if !(1..=8).contains(&self.regions) {
+            return Err(SettingsError::Regions(self.regions));
+        }
         check_size(gpu, "a rectified map", self.map)
     }
 
+    pub(super) fn slices_definitions(&self) -> Definitions {
+        flags(&[("BISECTRIX", self.reference == Reference::Bisectrix)])
+    }
+
+    pub(super) fn rectify_definitions(&self) -> Definitions {
+        flags(&[("DEPTH_WARP", self.depth_warp)])
+    }
+
     pub(super) fn filter_definitions(&self) -> Definitions {
-        let mut definitions = Definitions::new()
-            .set("BASES", self.bases as i32)
-            .set("BASES_PER_THREAD", self.bases_per_thread.min(self.bases) as i32);
-        if self.weighting == Weighting::Average {
-            definitions = definitions.flag("AVERAGE");
-        }
-        if self.format == BasisFormat::Rgba16Float {
-            definitions = definitions.flag("RGBA16FLOAT");
-        }
-        definitions
+        let definitions = flags(&[
+            ("AVERAGE", self.weighting == Weighting::Average),
+            ("RGBA16FLOAT", self.format == BasisFormat::Rgba16Float),
+            ("DIRECT", self.direct_sines),
+        ])
+        .set("BASES", self.bases as i32)
+        .set("BASES_PER_THREAD", self.bases_per_thread.min(self.bases) as i32);
+        self.with_regions(definitions)
     }
 
     pub(super) fn evaluate_definitions(&self) -> Definitions {
-        let mut definitions = Definitions::new().set("BASES", self.bases as i32);
-        // Below 8 bases the window widens the edge by more than the ringing that it takes away.
-        if self.window && self.bases >= 8 {
-            definitions = definitions.flag("LANCZOS");
-        }
-        if self.epipole_march {
-            definitions = definitions.flag("EPIPOLE_MARCH");
-        }
-        if self.weighting == Weighting::Average {
-            definitions = definitions.flag("AVERAGE");
-        }
-        definitions
+        let definitions = flags(&[
+            // Below 8 bases the window widens the edge by more than the ringing that it takes away.
+            ("LANCZOS", self.window && self.bases >= 8),
+            ("EPIPOLE_MARCH", self.epipole_march),
+            ("DEPTH_WARP", self.depth_warp),
+            ("AVERAGE", self.weighting == Weighting::Average),
+            ("NEAREST", self.filtering == Filtering::Nearest),
+            ("NEAR_PLANE", self.start == Start::NearPlane),
+        ])
+        .set("BASES", self.bases as i32);
+        self.with_regions(definitions)
     }
+
+    fn with_regions(&self, definitions: Definitions) -> Definitions {
+        if self.regions > 1 { definitions.set("REGIONS", self.regions as i32) } else { definitions }
+    }
+}
+
+/// The flags that are on.
+fn flags(flags: &[(&str, bool)]) -> Definitions {
+    flags.iter().filter(|(_, on)| *on).fold(Definitions::new(), |all, (name, _)| all.flag(*name))
 }
 
 /// Checks the size of a map or a picture against the device's limit.

@@ -12,7 +12,7 @@ use wgpu::TextureFormat;
 /// What is interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolated {
-    /// Visibility: radiance follows from each pixel's own distance. For directional lights.
+    /// Visibility: radiance follows from each pixel's own distance. For directional lights, and rays from the eye on.
     #[default]
     Visibility,
     /// Radiance and visibility, for light that is no product of visibility and a function of the ray.

@@ -9,6 +9,10 @@
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
 // definition AVERAGE: the bases are plain means, and so is that march.
+// definition NEAREST: the nearest texel of the bases instead of a bilinear blend; no sampler.
+// definition REGIONS: regions that the rows were filtered in, as in the filter; more than one costs more reads a pixel.
+// definition NEAR_PLANE: rays, and the medium, begin at the near plane instead of the eye.
+// definition DEPTH_WARP: as in rectify.
 // binding camera: the camera, perspective.
 // binding light: the directional light and its shadow map's clip space.
 // binding medium: the medium.
@@ -17,19 +21,21 @@
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
 // binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH.
 // binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
-// binding bases_sampler: linear; clamp to edge in u, repeat in v.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-#import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel, perspective_distance}
+#import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel}
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{
     series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored
 }
 #import airlight::core::light::Light
+#import airlight::core::prefix_sum::prefix_weight
 #import airlight::scattering::march::march_shadow_map
 #import airlight::scattering::rectify::{
-    Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray
+    Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
 }
+#import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin, prefix_column}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -42,39 +48,42 @@
 @group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
 #endif
 @group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
+#ifndef NEAREST
 @group(#{GROUP}) @binding(8) var bases_sampler: sampler;
+#endif
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
 
 const LAYERS: u32 = u32(#{BASES}) / 4u;
+#ifdef REGIONS
+const ROW_REGIONS: u32 = u32(#{REGIONS});
+#else
+const ROW_REGIONS: u32 = 1u;
+#endif
 
 /// Rays that cover fewer texels are marched.
 const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
-/// Radiance, and mean visibility in alpha, of a pixel.
-fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
-    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
-    let ray = perspective_ray(camera, ndc);
-    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
-    let distance = perspective_distance(camera, ndc, surface, medium.distance_limit);
-
-    let epipolar = epipolar_ray(frame, ray.direction);
-    // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
-    let row = nearest_row(frame, epipolar.row);
-    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
+/// The filtered series of a ray, read at `column` of its row, in texels.
+fn filtered_series(ray: RowRay, column: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(bases).xy);
-    let texels = clamp(size.x * distance * epipolar.sine / slice.radius_max, 0.0, size.x);
-    let at = vec2<f32>(max(texels - 0.5, 0.5), epipolar.row + 0.5) / size;
-
-    let depth_of_ray = depth_from_ray(slice, epipolar);
-    var series = series_first(depth_of_ray);
+#ifdef NEAREST
+    let place = vec2<u32>(clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0));
+#else
+    let place = vec2<f32>(column, ray.row + 0.5) / size;
+#endif
+    var series = series_first(ray.depth);
 #ifdef LANCZOS
     var window = series_first(1.0 / f32(4u * LAYERS));
 #endif
     var visibility = 0.5;
     for (var layer = 0u; layer < LAYERS; layer++) {
-        let filtered = basis_from_stored(textureSampleLevel(bases, bases_sampler, at, layer, 0.0));
+#ifdef NEAREST
+        let filtered = basis_from_stored(textureLoad(bases, place, layer, 0));
+#else
+        let filtered = basis_from_stored(textureSampleLevel(bases, bases_sampler, place, layer, 0.0));
+#endif
 #ifdef LANCZOS
         visibility += dot(coefficients_lanczos(series, window, layer, 4u * LAYERS), filtered);
         window = series_next(window);
@@ -83,24 +92,84 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #endif
         series = series_next(series);
     }
-    visibility = clamp(visibility, 0.0, 1.0);
+    return visibility;
+}
 
-#ifdef EPIPOLE_MARCH
-    let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
-    let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
+/// Mean visibility of a ray over its stretch of the row. `reference_step`: optical depth of a texel by which the bases
+/// are weighted; `optical_step`: that of the ray itself, by which regions are put together.
+fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
+    let width = textureDimensions(bases).x;
+    let first = region_of(ray.begin, width, ROW_REGIONS);
+    let last = region_of(ray.end, width, ROW_REGIONS);
+    var sum = 0.0;
+    var total = 0.0;
+    for (var region = first; region <= last; region++) {
+        let start = f32(region_begin(region, width, ROW_REGIONS));
+        let from_texel = max(ray.begin, start);
+        let to_texel = min(ray.end, f32(region_begin(region + 1u, width, ROW_REGIONS)));
+        var mean = filtered_series(ray, prefix_column(to_texel, start));
+#ifdef NEAR_PLANE
+        if from_texel > start {
+            let whole = prefix_weight(reference_step, to_texel - start);
+            let before = prefix_weight(reference_step, from_texel - start);
+            let part = mean * whole - filtered_series(ray, prefix_column(from_texel, start)) * before;
+            mean = clamp(part / max(whole - before, 1e-6 * whole), 0.0, 1.0);
+        }
+#endif
+        // In units of the stretch's first texel: finite however deep the stretch lies.
+        let weight = exp(-optical_step * (from_texel - ray.begin)) * prefix_weight(optical_step, to_texel - from_texel);
+        sum += mean * weight;
+        total += weight;
+    }
+    return select(0.0, sum / total, total > 0.0);
+}
+
+/// Radiance, and mean visibility in alpha, of a pixel.
+fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
+    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
+    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+    let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
+    // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
+    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
+    let width = f32(textureDimensions(bases).x);
+    let texels = clamp(width * ray.distance * ray.sine / slice.radius_max, 0.0, width);
+    var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(slice, ray));
+#ifdef DEPTH_WARP
+    row_ray.depth = warped_depth(row_ray.depth);
+#endif
+#ifdef NEAR_PLANE
+    let near = epipolar_ray(frame, ndc, camera.near_depth, ray.distance).distance;
+    row_ray.begin = stretch_begin(width * near * ray.sine / slice.radius_max, texels);
+#else
+    let near = 0.0;
+#endif
 #ifdef AVERAGE
     let extinction = 0.0;
 #else
     let extinction = medium.extinction;
 #endif
+    // Optical depth of a texel of a ray at right angles to the light.
+    let across = extinction * slice.radius_max / width;
+#ifdef REGIONS
+    var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
+#else ifdef NEAR_PLANE
+    var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
+#else
+    var visibility = filtered_series(row_ray, prefix_column(texels, 0.0));
+#endif
+    visibility = clamp(visibility, 0.0, 1.0);
+
+#ifdef EPIPOLE_MARCH
+    let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
+    let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
+    let direction = perspective_ray(camera, ndc).direction;
     let marched = march_shadow_map(
-        shadow_map, light, ray.origin, ray.direction, distance, extinction, steps, 0.5
+        shadow_map, light, camera.eye + near * direction, direction, ray.distance - near, extinction, steps, 0.5
     );
     visibility = mix(visibility, marched, near_epipole);
 #endif
 
-    let cosine = dot(ray.direction, light.direction);
-    let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
+    let radiance = in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, visibility);
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
 }
 

@@ -7,6 +7,8 @@
 // note: Depths outside 0..1 are clamped, non-finite ones count as unblocked.
 // definition BASES: number M of bases, a multiple of 4 from 4 to 128.
 // definition BASES_PER_THREAD: bases a thread filters, a multiple of 4.
+// definition REGIONS: regions of equal width that a row is filtered in, each by itself and by a thread of its own.
+// definition DIRECT: sines and cosines of every basis instead of the recurrence by rotation.
 // definition AVERAGE: plain means (average visibility) instead of means weighted by transmittance.
 // definition RGBA16FLOAT: store as rgba16float instead of rgba8unorm.
 // binding medium: the medium, for its extinction; absent with AVERAGE.
@@ -18,6 +20,7 @@
 #import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis, surface_bias}
 #import airlight::core::prefix_sum::{row_weights, row_weights_next, running_mean}
 #import airlight::scattering::rectify::slice_from_texel
+#import airlight::scattering::rows::region_begin
 #import airlight::scattering::single_scatter::Medium
 
 #ifndef AVERAGE
@@ -32,6 +35,11 @@
 #endif
 
 const LAYERS: u32 = u32(#{BASES}) / 4u;
+#ifdef REGIONS
+const ROW_REGIONS: u32 = u32(#{REGIONS});
+#else
+const ROW_REGIONS: u32 = 1u;
+#endif
 const PER_THREAD: u32 = u32(#{BASES_PER_THREAD}) / 4u;
 
 @compute @workgroup_size(32)
@@ -39,7 +47,7 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = textureDimensions(rectified);
     let row = id.x;
     let first = id.y * PER_THREAD;
-    if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS {
+    if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS || id.z >= ROW_REGIONS {
         return;
     }
 #ifdef AVERAGE
@@ -49,15 +57,21 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     var weights = row_weights(medium.extinction * slice.radius_max / (f32(size.x) * slice.reference));
 #endif
     var means = array<vec4<f32>, PER_THREAD>();
-    for (var column = 0u; column < size.x; column++) {
+    let end = region_begin(id.z + 1u, size.x, ROW_REGIONS);
+    for (var column = region_begin(id.z, size.x, ROW_REGIONS); column < end; column++) {
         let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
-        var series = series_at(min(depth + surface_bias(4u * LAYERS), 1.0), first);
+        let blocker = min(depth + surface_bias(4u * LAYERS), 1.0);
+        var series = series_at(blocker, first);
         for (var group = 0u; group < PER_THREAD; group++) {
             means[group] = running_mean(means[group], series.basis, weights);
             if first + group < LAYERS {
                 textureStore(bases, vec2<u32>(column, row), first + group, stored_from_basis(means[group]));
             }
+#ifdef DIRECT
+            series = series_at(blocker, first + group + 1u);
+#else
             series = series_next(series);
+#endif
         }
         weights = row_weights_next(weights);
     }

@@ -19,9 +19,7 @@
 // binding blue_noise: tile of blue noise 0..1, repeated over the picture, r32float or r8unorm; with JITTER_BLUE_NOISE only.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-#import airlight::core::camera::{
-    Camera, view_ray, perspective_ray, ndc_from_pixel, distance_from_depth, perspective_distance
-}
+#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
 #import airlight::core::jitter::{gradient_noise_offset, blue_noise_offset}
 #import airlight::core::light::Light
@@ -80,9 +78,11 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #ifdef SHADOW_MAP
     let ray = view_ray(camera, ndc);
     let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+    let cosine = dot(ray.direction, light.direction);
 #else
-    let ray = perspective_ray(camera, ndc);
-    let distance = perspective_distance(camera, ndc, surface, medium.distance_limit);
+    let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
+    let distance = ray.distance;
+    let cosine = ray.cosine;
 #endif
 #ifdef AVERAGE
     let extinction = 0.0;
@@ -96,23 +96,21 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
         max(parameters.steps, 1u), step_offset(pixel, parameters)
     );
 #else
-    let epipolar = epipolar_ray(frame, ray.direction);
-    let row = nearest_row(frame, epipolar.row);
+    let row = nearest_row(frame, ray.row);
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     let width = f32(textureDimensions(rectified).x);
-    let radius = distance * epipolar.sine;
+    let radius = distance * ray.sine;
     // A texel of a ray that barely leaves the light's direction is longer than any ray: the clamp keeps it finite.
-    let optical_step = extinction * slice.radius_max / (width * max(epipolar.sine, 1e-6));
+    let optical_step = extinction * slice.radius_max / (width * max(ray.sine, 1e-6));
     let texels = width * radius / slice.radius_max;
 #ifdef STEPS
     let visibility = march_row_steps(
-        rectified, row, depth_from_ray(slice, epipolar), texels, parameters.steps, step_offset(pixel, parameters)
+        rectified, row, depth_from_ray(slice, ray), texels, parameters.steps, step_offset(pixel, parameters)
     );
 #else
-    let visibility = march_row(rectified, row, depth_from_ray(slice, epipolar), texels, optical_step);
+    let visibility = march_row(rectified, row, depth_from_ray(slice, ray), texels, optical_step);
 #endif
 #endif
-    let cosine = dot(ray.direction, light.direction);
     let radiance = in_scattered(medium, light.radiance, cosine, distance, visibility);
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
 }

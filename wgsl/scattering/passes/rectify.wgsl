@@ -4,6 +4,7 @@
 // note: Nearest texel: a blend of two depths is the depth of nothing. Blockers outside the bounds of a slice are
 // note: clamped into its guard band; light rays outside the shadow map, or without a blocker, store 1.
 // note: Non-finite depths count as empty.
+// definition DEPTH_WARP: stretch depths near the light, see warped_depth.
 // binding light: the directional light and its shadow map's clip space.
 // binding frame: the frame of the slices.
 // binding slices: their bounds, rgba32float, one texel a slice.
@@ -13,7 +14,7 @@
 #import airlight::core::finite::finite_or
 #import airlight::core::light::{Light, shadow_position}
 #import airlight::scattering::rectify::{
-    Frame, row_azimuth, azimuth_direction, slice_from_texel, depth_from_blocker
+    Frame, row_azimuth, azimuth_direction, slice_from_texel, depth_from_blocker, warped_depth
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> light: Light;
@@ -53,7 +54,10 @@ fn rectify(@builtin(global_invocation_id) id: vec3<u32>) {
         let stored = finite_or(textureLoad(shadow_map, texel, 0).x, light.far_depth);
         // The point looked at lies at the height of the eye, so this is the blocker's height above it.
         let height = (stored - at.z) * metres;
-        let depth = depth_from_blocker(slice, slice.radius_max * step / f32(size.x), height);
+        var depth = depth_from_blocker(slice, slice.radius_max * step / f32(size.x), height);
+#ifdef DEPTH_WARP
+        depth = warped_depth(depth);
+#endif
         let empty = !inside || stored == light.far_depth;
         textureStore(rectified, vec2<u32>(column, id.y), vec4<f32>(select(depth, 1.0, empty), 0.0, 0.0, 1.0));
     }

@@ -2,7 +2,8 @@
 // summary: In-scattered radiance of every pixel from a picture that was evaluated at a half or a quarter of the resolution.
 // source: joint bilateral upsampling, Kopf, Cohen, Lischinski and Uyttendaele (2007); thesis Eq. 4.2.
 // note: What is interpolated is the visibility: the pixel's own distance and phase function then give its
-// note: radiance, so that edges of the picture stay as sharp as its depth buffer.
+// note: radiance, so that edges of the picture stay as sharp as its depth buffer. Rays begin at the eye: a
+// note: picture that was evaluated with NEAR_PLANE needs RADIANCE.
 // note: Non-finite values of the evaluated picture count as 0.
 // definition RADIANCE: interpolates radiance as well, for light that is no product of visibility and a function of the ray.
 // binding camera: the camera of the full picture, any.

@@ -6,7 +6,7 @@ use super::{Quality, Row, figure, interleaved, ratio, time};
 use crate::command::CommandError;
 use crate::core::Jitter;
 use crate::scattering::{
-    Along, Interpolated, March, Prefiltered, Rectification, Reduced, Resolution, Settings, Upsample,
+    Along, Inputs, Interpolated, March, Prefiltered, Rectification, Reduced, Resolution, Settings, Upsample,
     Weighting, epipole_near_picture,
 };
 use crate::{Gpu, Shaders, Stage, Texture};
@@ -37,62 +37,111 @@ fn average_radiance(picture: &Picture) -> Vec<f64> {
         .collect()
 }
 
-fn resolution_name(resolution: Resolution) -> &'static str {
-    match resolution {
-        Resolution::Half => "half",
-        Resolution::Quarter => "quarter",
+/// What a reduced picture takes: its pixels, the map rectified for its camera, and the upsampling.
+struct Fewer {
+    resolution: Resolution,
+    reduced: Reduced,
+    upsample: Upsample,
+}
+
+impl Fewer {
+    fn new(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        stage: &Stage,
+        resolution: Resolution,
+    ) -> Result<Self, CommandError> {
+        Ok(Self {
+            resolution,
+            reduced: Reduced::new(gpu, shaders, &stage.camera, resolution)?,
+            upsample: Upsample::new(gpu, shaders, Interpolated::Visibility, SIZE)?,
+        })
+    }
+
+    fn name(&self) -> &'static str {
+        match self.resolution {
+            Resolution::Half => "half",
+            Resolution::Quarter => "quarter",
+        }
+    }
+
+    /// The f64 picture over a map that was rectified for this camera.
+    fn truth(&self, gpu: &Gpu, stage: &Stage, map: &Texture) -> Result<Truth, CommandError> {
+        Truth::over(gpu, stage, &stage.camera.reduced(self.resolution.factor()), map, STRIDE)
     }
 }
 
-/// The march along rows at full resolution over the march of fewer pixels, their choice and the upsampling.
+fn radiance_error(gpu: &Gpu, truth: &Truth, exact: &[f64], scattered: &Texture) -> Result<f64, CommandError> {
+    Ok(error::relative_rmse(&truth.radiance(gpu, scattered)?, exact))
+}
+
+fn rectified(gpu: &Gpu, shaders: &Shaders, inputs: &Inputs<'_>) -> Result<Rectification, CommandError> {
+    let map = Rectification::new(gpu, shaders, Settings::tuned(gpu).map)?;
+    let bound = map.bind(gpu, inputs)?;
+    run(gpu, &|encoder| map.record(encoder, &bound))?;
+    Ok(map)
+}
+
+/// The march along rows at full resolution over the march of fewer pixels, their choice and the upsampling;
+/// without the rectification, which is the same.
 fn reduced_march(gpu: &Gpu, shaders: &Shaders, stage: &Stage) -> Result<Vec<Row>, CommandError> {
     let inputs = stage.inputs();
-    let map = Rectification::new(gpu, shaders, Settings::tuned(gpu).map)?;
-    let bound = map.bind(gpu, &inputs)?;
-    run(gpu, &|encoder| map.record(encoder, &bound))?;
-    let truth = Truth::with_stride(gpu, stage, &map.rectified, STRIDE)?;
-    let exact = average_radiance(&truth.rectified);
-    let error = |texture: &Texture| -> Result<f64, CommandError> {
-        Ok(error::relative_rmse(&truth.radiance(gpu, texture)?, &exact))
+    let march = |map: &Rectification, inputs: &Inputs<'_>, viewport| -> Result<_, CommandError> {
+        let along = Along::RowSteps { map, steps: STEPS };
+        let march = March::new(gpu, shaders, &along, Weighting::Average, viewport)?;
+        let bound = march.bind(gpu, inputs, &along)?;
+        Ok((march, bound))
     };
-    let along = Along::RowSteps { map: &map, steps: STEPS };
-    let full = March::new(gpu, shaders, &along, Weighting::Average, SIZE)?;
-    let full_bound = full.bind(gpu, &inputs, &along)?;
-    let mut rows = Vec::new();
+    let map = rectified(gpu, shaders, &inputs)?;
+    let (full, full_bound) = march(&map, &inputs, SIZE)?;
+    let mut cases = Vec::new();
     for resolution in [Resolution::Half, Resolution::Quarter] {
-        let name = resolution_name(resolution);
-        let reduced = Reduced::new(gpu, shaders, &stage.camera, resolution)?;
-        let reduced_bound = reduced.bind(gpu, &inputs)?;
-        let march = March::new(gpu, shaders, &along, Weighting::Average, reduced.viewport())?;
-        let march_bound = march.bind(gpu, &reduced.inputs(&inputs), &along)?;
-        let upsample = Upsample::new(gpu, shaders, Interpolated::Visibility, SIZE)?;
-        let upsample_bound = upsample.bind(gpu, &inputs, &reduced, &march.scattered)?;
-        let samples = interleaved(
-            gpu,
-            &[
-                &|encoder| full.record(encoder, &full_bound),
-                &|encoder| {
-                    reduced.record(encoder, &reduced_bound);
-                    march.record(encoder, &march_bound);
-                    upsample.record(encoder, &upsample_bound);
-                },
-                &|encoder| upsample.record(encoder, &upsample_bound),
-            ],
-            5,
-        )?;
-        let quality = Quality {
-            metric: RADIANCE,
-            error: error(&upsample.scattered)?,
-            baseline_error: error(&full.scattered)?,
-        };
-        let speedup = format!("{name}_resolution_speedup");
-        rows.push(ratio(SYSTEM, speedup, &samples[0], &samples[1], "higher", Some(quality)));
-        rows.push(time(SYSTEM, format!("{name}_resolution_upsample"), samples[2].clone()));
+        let fewer = Fewer::new(gpu, shaders, stage, resolution)?;
+        let reduced = fewer.reduced.inputs(&inputs);
+        let map = rectified(gpu, shaders, &reduced)?;
+        let (march, bound) = march(&map, &reduced, fewer.reduced.viewport())?;
+        let bounds = [
+            fewer.reduced.bind(gpu, &inputs)?,
+            bound,
+            fewer.upsample.bind(gpu, &inputs, &fewer.reduced, &march.scattered)?,
+        ];
+        cases.push((fewer, map, march, bounds));
+    }
+    let whole = |case: usize| {
+        let (fewer, _, march, bounds) = &cases[case];
+        move |encoder: &mut wgpu::CommandEncoder| {
+            fewer.reduced.record(encoder, &bounds[0]);
+            march.record(encoder, &bounds[1]);
+            fewer.upsample.record(encoder, &bounds[2]);
+        }
+    };
+    let upsampling = |case: usize| {
+        let (fewer, _, _, bounds) = &cases[case];
+        move |encoder: &mut wgpu::CommandEncoder| fewer.upsample.record(encoder, &bounds[2])
+    };
+    let samples = interleaved(
+        gpu,
+        &[&|encoder| full.record(encoder, &full_bound), &whole(0), &whole(1), &upsampling(0), &upsampling(1)],
+        5,
+    )?;
+    let truth = Truth::over(gpu, stage, &stage.camera, &map.rectified, STRIDE)?;
+    let baseline_error = radiance_error(gpu, &truth, &average_radiance(&truth.rectified), &full.scattered)?;
+    let mut rows = Vec::new();
+    for (index, (fewer, map, march, _)) in cases.iter().enumerate() {
+        let truth = fewer.truth(gpu, stage, &map.rectified)?;
+        let exact = average_radiance(&truth.rectified);
+        let error = radiance_error(gpu, &truth, &exact, &fewer.upsample.scattered)?;
+        let quality = Quality { metric: RADIANCE, error, baseline_error };
+        let name = format!("{}_resolution_speedup", fewer.name());
+        rows.push(ratio(SYSTEM, name, &samples[0], &samples[1 + index], "higher", Some(quality)));
+        let name = format!("{}_resolution_upsample", fewer.name());
+        rows.push(time(SYSTEM, name, samples[3 + index].clone()));
         let radiance = Upsample::new(gpu, shaders, Interpolated::Radiance, SIZE)?;
-        let radiance_bound = radiance.bind(gpu, &inputs, &reduced, &march.scattered)?;
-        run(gpu, &|encoder| radiance.record(encoder, &radiance_bound))?;
-        let name = format!("{name}_resolution_error_interpolating_radiance");
-        rows.push(figure(SYSTEM, name, error(&radiance.scattered)?, "fraction"));
+        let bound = radiance.bind(gpu, &inputs, &fewer.reduced, &march.scattered)?;
+        run(gpu, &|encoder| radiance.record(encoder, &bound))?;
+        let error = radiance_error(gpu, &truth, &exact, &radiance.scattered)?;
+        let name = format!("{}_resolution_error_interpolating_radiance", fewer.name());
+        rows.push(figure(SYSTEM, name, error, "fraction"));
     }
     Ok(rows)
 }
@@ -104,36 +153,36 @@ fn reduced_prefiltered(gpu: &Gpu, shaders: &Shaders, stage: &Stage) -> Result<Ve
     let settings = Settings { epipole_march, ..Settings::tuned(gpu) };
     let full = Prefiltered::new(gpu, shaders, settings, SIZE)?;
     let full_bound = full.bind(gpu, &inputs)?;
-    run(gpu, &|encoder| full.record(encoder, &full_bound))?;
-    let truth = Truth::with_stride(gpu, stage, &full.rectification.rectified, STRIDE)?;
-    let exact = truth.rectified.radiance();
-    let error = |texture: &Texture| -> Result<f64, CommandError> {
-        Ok(error::relative_rmse(&truth.radiance(gpu, texture)?, &exact))
-    };
-    let mut rows = Vec::new();
+    let mut cases = Vec::new();
     for resolution in [Resolution::Half, Resolution::Quarter] {
-        let reduced = Reduced::new(gpu, shaders, &stage.camera, resolution)?;
-        let reduced_bound = reduced.bind(gpu, &inputs)?;
-        let fewer = Prefiltered::new(gpu, shaders, settings, reduced.viewport())?;
-        let fewer_bound = fewer.bind_reduced(gpu, &inputs, &reduced.inputs(&inputs))?;
-        let upsample = Upsample::new(gpu, shaders, Interpolated::Visibility, SIZE)?;
-        let upsample_bound = upsample.bind(gpu, &inputs, &reduced, &fewer.scattered)?;
-        let samples = interleaved(
-            gpu,
-            &[&|encoder| full.record(encoder, &full_bound), &|encoder| {
-                reduced.record(encoder, &reduced_bound);
-                fewer.record(encoder, &fewer_bound);
-                upsample.record(encoder, &upsample_bound);
-            }],
-            7,
-        )?;
-        let quality = Quality {
-            metric: RADIANCE,
-            error: error(&upsample.scattered)?,
-            baseline_error: error(&full.scattered)?,
-        };
-        let name = format!("prefiltered_{}_resolution_speedup", resolution_name(resolution));
-        rows.push(ratio(SYSTEM, name, &samples[0], &samples[1], "higher", Some(quality)));
+        let fewer = Fewer::new(gpu, shaders, stage, resolution)?;
+        let method = Prefiltered::new(gpu, shaders, settings, fewer.reduced.viewport())?;
+        let bound = method.bind(gpu, &fewer.reduced.inputs(&inputs))?;
+        let bounds = [
+            fewer.reduced.bind(gpu, &inputs)?,
+            fewer.upsample.bind(gpu, &inputs, &fewer.reduced, &method.scattered)?,
+        ];
+        cases.push((fewer, method, bound, bounds));
+    }
+    let whole = |case: usize| {
+        let (fewer, method, bound, bounds) = &cases[case];
+        move |encoder: &mut wgpu::CommandEncoder| {
+            fewer.reduced.record(encoder, &bounds[0]);
+            method.record(encoder, bound);
+            fewer.upsample.record(encoder, &bounds[1]);
+        }
+    };
+    let samples = interleaved(gpu, &[&|encoder| full.record(encoder, &full_bound), &whole(0), &whole(1)], 5)?;
+    let truth = Truth::over(gpu, stage, &stage.camera, &full.rectification.rectified, STRIDE)?;
+    let baseline_error = radiance_error(gpu, &truth, &truth.rectified.radiance(), &full.scattered)?;
+    let mut rows = Vec::new();
+    for (index, (fewer, method, ..)) in cases.iter().enumerate() {
+        let truth = fewer.truth(gpu, stage, &method.rectification.rectified)?;
+        let exact = truth.rectified.radiance();
+        let error = radiance_error(gpu, &truth, &exact, &fewer.upsample.scattered)?;
+        let quality = Quality { metric: RADIANCE, error, baseline_error };
+        let name = format!("prefiltered_{}_resolution_speedup", fewer.name());
+        rows.push(ratio(SYSTEM, name, &samples[0], &samples[1 + index], "higher", Some(quality)));
     }
     Ok(rows)
 }

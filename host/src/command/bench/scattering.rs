@@ -47,23 +47,30 @@ pub struct Truth {
 impl Truth {
     /// Evaluates the picture.
     pub fn new(gpu: &Gpu, stage: &Stage, map: &Texture) -> Result<Self, CommandError> {
-        Self::with_stride(gpu, stage, map, STRIDE)
+        Self::over(gpu, stage, &stage.camera, map, STRIDE)
     }
 
-    /// Evaluates every `stride`-th pixel in x and y.
-    pub fn with_stride(gpu: &Gpu, stage: &Stage, map: &Texture, stride: usize) -> Result<Self, CommandError> {
-        let camera = Camera::from_matrix(
-            Mat4::from(stage.camera.clip_from_world.to_cols_array()),
-            f64::from(stage.camera.far_depth),
-        )
-        .ok_or_else(|| CommandError::failure("the camera's matrix has no inverse"))?;
+    /// Evaluates every `stride`-th pixel in x and y over a map that was rectified for `rectified`.
+    pub fn over(
+        gpu: &Gpu,
+        stage: &Stage,
+        rectified: &crate::core::Camera,
+        map: &Texture,
+        stride: usize,
+    ) -> Result<Self, CommandError> {
+        let camera = |camera: &crate::core::Camera| {
+            let matrix = Mat4::from(camera.clip_from_world.to_cols_array());
+            Camera::from_matrix(matrix, f64::from(camera.far_depth))
+                .ok_or_else(|| CommandError::failure("the camera's matrix has no inverse"))
+        };
+        let (camera, rectified) = (camera(&stage.camera)?, camera(rectified)?);
         let size = [stage.camera.viewport.x as u32, stage.camera.viewport.y as u32];
         let depth = stage.pictures.depth.read(gpu).map_err(CommandError::failure)?;
         let values = map.read(gpu).map_err(CommandError::failure)?;
         let [width, height, _] = map.size();
         let scene = scene(stage, &camera, &depth, size);
         let rectification = reference::Rectification::new(
-            &camera,
+            &rectified,
             scene.light.direction,
             scene.medium.distance_limit,
             width as usize,
