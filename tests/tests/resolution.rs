@@ -238,7 +238,8 @@ fn upsampled_radiance_is_that_of_the_exact_picture() {
     let _turn = gpu::turn();
     // Budgets at this size, where a leaf covers a quarter of the pixels that it covers at 1920x1080:
     // half, quarter.
-    for (name, budgets) in [("foliage", [0.02, 0.03]), ("terrain", [0.003, 0.006]), ("torus", [0.004, 0.008])]
+    for (name, budgets) in
+        [("foliage", [0.01, 0.015]), ("terrain", [0.002, 0.003]), ("torus", [0.003, 0.004])]
     {
         let case = Case::new(name, [959, 539]);
         let inputs = case.stage.inputs();
@@ -262,7 +263,7 @@ fn upsampled_radiance_is_that_of_the_exact_picture() {
                 resolution.factor()
             );
             assert!(visibility <= budget, "{name}, {resolution:?}: {visibility} exceeds {budget}");
-            assert!(radiance <= 2.5 * budget, "{name}, {resolution:?}: {radiance}");
+            assert!(radiance <= 3.0 * budget, "{name}, {resolution:?}: {radiance}");
         }
     }
 }
