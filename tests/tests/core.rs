@@ -17,7 +17,7 @@ use gpu::{Probe, Random, gpu, shaders};
 use std::f64::consts::PI;
 
 /// Every function of the core modules, by the test that holds it.
-const COVERED: [(&str, &[&str]); 8] = [
+const COVERED: [(&str, &[&str]); 12] = [
     (
         "camera",
         &[
@@ -69,6 +69,10 @@ const COVERED: [(&str, &[&str]); 8] = [
     ("phase", &["isotropic", "henyey_greenstein"]),
     ("prefix_sum", &["row_weights", "row_weights_next", "running_mean", "one_minus_exp", "prefix_weight"]),
     ("shadow_views", &["view_contains", "or_in_view", "clip_in_views", "view_position", "point_at_depth"]),
+    ("jitter", &["gradient_noise_offset", "blue_noise_offset"]),
+    ("ray_depth", &["ray_depth", "distance_on_ray", "depth_on_ray"]),
+    ("resolve_depth", &["averaging_extinction", "distance_of_transmittance"]),
+    ("picture", &["picture_corner"]),
 ];
 
 #[test]
@@ -1136,4 +1140,277 @@ fn textures_come_back_as_they_went() {
         assert_eq!(back.len(), values.len());
         assert!(texture.write(gpu(), &values[1..]).is_err(), "{format:?}");
     }
+}
+
+// Jitter.
+
+/// Gradient noise of pixels in frames: x, y, frame.
+fn gradient_noise(places: &[[u32; 3]]) -> Vec<f64> {
+    let probe = Probe {
+        head: "#import airlight::core::jitter::gradient_noise_offset",
+        body: "output(0u, gradient_noise_offset(vec2<u32>(u32(input(0u)), u32(input(1u))), u32(input(2u))));",
+        inputs: 3,
+        outputs: 1,
+    };
+    let inputs: Vec<f32> = places.iter().flatten().map(|value| *value as f32).collect();
+    probe.run(&inputs).into_iter().map(f).collect()
+}
+
+/// Distance on the circle of circumference one.
+fn around(a: f64, b: f64) -> f64 {
+    let d = (a - b).abs();
+    d.min(1.0 - d)
+}
+
+#[test]
+fn gradient_noise_is_that_of_jimenez() {
+    let mut random = Random(19);
+    let places: Vec<[u32; 3]> = (0..20_000)
+        .map(|_| [random.below(4096) as u32, random.below(4096) as u32, random.below(200) as u32])
+        .collect();
+    let found = gradient_noise(&places);
+    let error = worst(places.iter().zip(&found).map(|([x, y, frame], found)| {
+        assert!((0.0..1.0).contains(found), "{found}");
+        let at = [x, y].map(|c| f64::from(*c) + 5.588238 * f64::from(frame % 64));
+        let expected = (52.9829189 * (0.06711056 * at[0] + 0.00583715 * at[1]).fract()).fract();
+        (around(*found, expected), 0.0)
+    }));
+    // The dot product is up to 330, rounded to 3e-5, and then magnified 53 times.
+    hold("gradient_noise_offset, around the circle", error, 3e-3);
+}
+
+#[test]
+fn gradient_noise_is_uniform_in_space_and_in_time() {
+    let picture: Vec<[u32; 3]> = (0..256 * 256).map(|i| [i % 256, i / 256, 0]).collect();
+    let values = gradient_noise(&picture);
+    let mut sorted = values.clone();
+    sorted.sort_by(f64::total_cmp);
+    // Kolmogorov's distance of 65536 random numbers would be below 0.0064 with a confidence of 99 %.
+    let distance = worst(sorted.iter().enumerate().map(|(i, v)| (*v, (i as f64 + 0.5) / 65536.0)));
+    hold("gradient noise, distance from the uniform distribution", distance, 0.0064);
+    // The means of 3x3 pixels: of random numbers they would scatter by 0.096.
+    let mut squares = 0.0;
+    for y in 0..254 {
+        for x in 0..254 {
+            let mean = (0..9).map(|i| values[(y + i / 3) * 256 + x + i % 3]).sum::<f64>() / 9.0;
+            squares += (mean - 0.5).powi(2) / (254.0 * 254.0);
+        }
+    }
+    hold("gradient noise, scatter of the means of 3x3 pixels", squares.sqrt(), 0.04);
+    // The means of frames: of random numbers they would scatter by 0.289 over the root of their number.
+    for (frames, budget) in [(8, 0.06), (16, 0.04), (64, 0.02)] {
+        let places: Vec<[u32; 3]> =
+            (0..32 * 32 * frames).map(|i| [i / frames % 32, i / frames / 32, i % frames]).collect();
+        let means = gradient_noise(&places);
+        let means = means.chunks_exact(frames as usize).map(|v| v.iter().sum::<f64>() / f64::from(frames));
+        let scatter = (means.map(|m| (m - 0.5).powi(2)).sum::<f64>() / 1024.0).sqrt();
+        hold(&format!("gradient noise, scatter of the means of {frames} frames"), scatter, budget);
+    }
+}
+
+#[test]
+fn blue_noise_turns_by_the_golden_ratio() {
+    let folder = gpu::copy_of_wgsl();
+    let text = "#import airlight::core::jitter::blue_noise_offset
+        @group(#{GROUP}) @binding(0) var tile: texture_2d<f32>;
+        @group(#{GROUP}) @binding(1) var<storage, read> frames: array<u32>;
+        @group(#{GROUP}) @binding(2) var<storage, read_write> outputs: array<f32>;
+        @compute @workgroup_size(64)
+        fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+            let pixel = vec2<u32>(id.x % 8u, id.x / 8u);
+            if id.x < 64u {
+                for (var i = 0u; i < arrayLength(&frames); i++) {
+                    outputs[64u * i + id.x] = blue_noise_offset(tile, pixel, frames[i]);
+                }
+            }
+        }";
+    std::fs::write(folder.path().join("core/passes/probe.wgsl"), text).unwrap();
+    let library = airlight::validate::Library::from_directory(folder.path()).unwrap();
+    let shaders = airlight::Shaders::from_library(library);
+    let pass =
+        airlight::Pass::compute_with(gpu(), &shaders, "core/probe", &airlight::validate::Definitions::new())
+            .unwrap();
+    // A tile of 4x4, repeated; one value is not a number, one is out of range, one is 1.
+    let mut values: Vec<f32> = (0..16).map(|i| (i as f32 + 0.5) / 16.0).collect();
+    (values[3], values[5], values[6]) = (f32::NAN, 1.75, 1.0);
+    let tile = gpu::texture([4, 4], wgpu::TextureFormat::R32Float, &values);
+    let mut frames: Vec<u32> = (0..64).collect();
+    frames.extend([1_000_003, u32::MAX]);
+    let bytes: Vec<u8> = frames.iter().flat_map(|frame| frame.to_le_bytes()).collect();
+    let frame_buffer = Buffer::with_bytes(gpu(), &bytes, wgpu::BufferUsages::STORAGE);
+    let outputs = Buffer::storage(gpu(), 64 * 4 * frames.len() as u64);
+    let resources =
+        [("tile", (&tile).into()), ("frames", (&frame_buffer).into()), ("outputs", (&outputs).into())];
+    let bound = pass.bind(gpu(), &resources).unwrap();
+    let mut encoder = gpu().encoder();
+    pass.dispatch(&mut encoder, &bound, [64, 1, 1]);
+    gpu().submit(encoder).unwrap();
+    let found = outputs.read_floats(gpu()).unwrap();
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut first, mut any) = (0.0_f64, 0.0_f64);
+    for (i, frame) in frames.iter().enumerate() {
+        // Turns are counted in units of 2^-32, off by half a unit a frame.
+        let turn = f64::from(frame.wrapping_mul(2_654_435_769)) / 4_294_967_296.0;
+        for pixel in 0..64 {
+            let value = values[pixel / 8 % 4 * 4 + pixel % 4];
+            let value = if value.is_finite() { f(value).clamp(0.0, 1.0) } else { 0.0 };
+            let turned = f(found[64 * i + pixel]);
+            assert!((0.0..1.0).contains(&turned), "{turned}");
+            any = any.max(around(turned, (value + turn).fract()));
+            if i < 64 {
+                first = first.max(around(turned, (value + f64::from(*frame) * golden).fract()));
+            }
+        }
+    }
+    hold("blue_noise_offset, around the circle, 64 frames", first, 2e-7);
+    hold("blue_noise_offset, around the circle, any frame", any, 2e-7);
+    // The mean over n frames, n a Fibonacci number: the values lie within 1 / (sqrt(5) n) of n even places,
+    // so that their mean is off by (1 + 1 / sqrt(5)) / (2 n) at most; random ones would scatter by 0.289 / sqrt(n).
+    for frames in [8, 21, 55] {
+        let budget = 0.5 * (1.0 + 0.2_f64.sqrt()) / frames as f64;
+        let off =
+            worst((0..64).map(|pixel| {
+                ((0..frames).map(|i| f(found[64 * i + pixel])).sum::<f64>() / frames as f64, 0.5)
+            }));
+        hold(&format!("blue noise, greatest error of the mean of {frames} frames"), off, budget);
+    }
+}
+
+// Depths on a ray, and of several samples.
+
+#[test]
+fn depths_and_distances_on_a_ray_are_those_of_the_camera() {
+    let head = CAMERA.replace(
+        "#import airlight::core::camera",
+        "#import airlight::core::ray_depth::{ray_depth, distance_on_ray, depth_on_ray}
+         #import airlight::core::camera",
+    );
+    let probe = Probe {
+        head: &head,
+        body: "let camera = camera_at();
+               let ndc = vec2<f32>(input(40u), input(41u));
+               let ray = ray_depth(camera, view_ray(camera, ndc), ndc);
+               output(0u, distance_on_ray(ray, input(42u), 500.0));
+               output(1u, depth_on_ray(ray, input(43u)));
+               output(2u, distance_on_ray(ray, depth_on_ray(ray, input(43u)), 500.0));
+               output(3u, distance_on_ray(ray, camera.far_depth, 500.0));
+               output(4u, depth_on_ray(ray, 0.0));
+               output(5u, depth_on_ray(ray, 1e30));",
+        inputs: 44,
+        outputs: 6,
+    };
+    let mut random = Random(53);
+    let (mut inputs, mut cases) = (Vec::new(), Vec::new());
+    for index in 0..2000 {
+        let ndc = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)].map(|x| f(x as f32));
+        if index % 4 == 0 {
+            let (towards, centre) = (random.direction(), random.direction() * random.between(0.0, 20.0));
+            let half = random.between(1.0, 30.0);
+            let far_depth = if random.unit() < 0.5 { 0.0 } else { 1.0 };
+            let clip = gpu::light_matrix(towards, centre, half, far_depth);
+            let camera = airlight::core::Camera {
+                clip_from_world: gpu::host_matrix(clip),
+                world_from_clip: gpu::host_matrix(clip.inverse().unwrap()),
+                eye: glam::Vec3::ZERO,
+                near_depth: 1.0 - far_depth as f32,
+                viewport: glam::Vec2::ONE,
+                far_depth: far_depth as f32,
+                projection: 1,
+            };
+            let distance = random.between(0.01, 1.99) * half;
+            let along = distance / (2.0 * half);
+            let depth = if far_depth > 0.5 { along } else { 1.0 - along };
+            inputs.extend(camera_words(&camera));
+            inputs.extend([ndc[0] as f32, ndc[1] as f32, depth as f32, distance as f32]);
+            let size = half + centre.length();
+            cases.push((
+                distance,
+                2e-6 * size,
+                depth,
+                2e-6 * size / half,
+                2.0 * half,
+                far_depth,
+                size / half,
+            ));
+        } else {
+            let camera = random.camera(1.5);
+            let direction = camera.ray(ndc);
+            let distance = random.magnitude(0.5, 100.0).min(0.9 * camera.far);
+            let depth = camera.project(camera.eye + direction * distance).unwrap()[2];
+            inputs.extend(camera_words(&gpu::host_camera(&camera, [96, 64])));
+            inputs.extend([ndc[0] as f32, ndc[1] as f32, depth as f32, distance as f32]);
+            // As for distance_from_depth: forward depth resolves what f32 resolves next to 1, and the far
+            // plane is unprojected and the eye taken off.
+            let cancelled =
+                camera.eye.length() / if camera.far_depth > 0.5 { camera.near } else { camera.far };
+            let resolved =
+                if camera.far_depth > 0.5 { 4e-7 * distance * distance / camera.near } else { 0.0 };
+            let budget =
+                2e-6 * (distance + camera.eye.length()) + resolved + distance * 2e-7 * cancelled + 1e-5;
+            let of_depth = 3e-7 + (2e-6 + 2e-7 * cancelled) * (1.0 - depth).min(depth).abs();
+            let sky = camera.far / direction.dot(camera.forward);
+            cases.push((distance, budget, depth, of_depth, sky, camera.far_depth, 0.0));
+        }
+    }
+    let found = probe.run(&inputs);
+    let mut errors = [0.0_f64; 4];
+    for ((distance, budget, depth, of_depth, sky, far_depth, size), found) in
+        cases.iter().zip(found.chunks_exact(6))
+    {
+        let mut note = |kind: usize, error: f64| {
+            if error > errors[kind] || error.is_nan() {
+                errors[kind] = error;
+            }
+        };
+        note(0, (f(found[0]) - distance).abs() / budget);
+        note(1, (f(found[1]) - depth).abs() / of_depth);
+        note(2, (f(found[2]) - distance).abs() / (2.0 * budget));
+        let plane = if *far_depth > 0.5 { 1e-3 } else { 1e-4 };
+        note(3, (f(found[3]) / sky.min(500.0) - 1.0).abs() / plane);
+        assert!((f(found[4]) - (1.0 - far_depth)).abs() <= 2e-6 * size, "depth at the eye: {}", found[4]);
+        assert!((f(found[5]) - far_depth).abs() < 1e-6, "depth at infinity: {}", found[5]);
+    }
+    for (kind, error) in
+        ["distance_on_ray", "depth_on_ray", "there and back", "of the far plane"].iter().zip(errors)
+    {
+        hold(&format!("{kind}, in budgets"), error, 1.0);
+    }
+}
+
+#[test]
+fn distances_of_mean_transmittance() {
+    let probe = Probe {
+        head: "#import airlight::core::resolve_depth::{averaging_extinction, distance_of_transmittance}",
+        body: "let nearest = min(input(0u), input(1u));
+               let farthest = max(input(0u), input(1u));
+               let extinction = averaging_extinction(input(2u), nearest, farthest);
+               let mean = 0.5 * (exp(-extinction * (input(0u) - nearest)) + exp(-extinction * (input(1u) - nearest)));
+               output(0u, distance_of_transmittance(nearest, extinction, mean));
+               output(1u, distance_of_transmittance(nearest, extinction, 0.0));",
+        inputs: 3,
+        outputs: 2,
+    };
+    let mut random = Random(61);
+    let mut inputs: Vec<f32> = (0..2000)
+        .flat_map(|_| {
+            let extinction = if random.unit() < 0.2 { 0.0 } else { random.magnitude(1e-9, 1e2) };
+            [random.magnitude(1e-2, 1e3), random.magnitude(1e-2, 1e3), extinction].map(|x| x as f32)
+        })
+        .collect();
+    inputs.extend([5.0, 5.0, 0.0, 0.0, 0.0, 1e6, 0.0, 1e7, 1e6]);
+    let found = probe.run(&inputs);
+    let error = worst(inputs.chunks_exact(3).zip(found.chunks_exact(2)).map(|(input, found)| {
+        let [a, b, extinction] = [0, 1, 2].map(|i| f(input[i]));
+        assert!(found.iter().all(|x| x.is_finite()), "{input:?}: {found:?}");
+        let spread = (a - b).abs();
+        let expected = if extinction * spread < 1e-7 {
+            0.5 * (a + b)
+        } else {
+            let nearest = a.min(b);
+            // ln((1 + e^-x) / 2) without cancellation.
+            nearest - (0.5 * (-extinction * spread).exp_m1()).ln_1p() / extinction
+        };
+        ((f(found[0]) - expected).abs() / (2e-4 * spread + 2e-7 * a.max(b) + 1e-30), 0.0)
+    }));
+    hold("distance_of_transmittance, in 2e-4 of the spread", error, 1.0);
 }

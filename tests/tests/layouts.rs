@@ -3,8 +3,8 @@
 //! through encase, and its bytes are looked for at the offset that reflection reports.
 #![allow(clippy::unwrap_used)]
 
-use airlight::core::{Camera, Light, MAX_VIEWS, ShadowViews, Sky, TonemapParameters};
-use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit};
+use airlight::core::{Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, TonemapParameters};
+use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -177,7 +177,11 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         bounds: Vec4, depth_min: f32, depth_span: f32, splits: u32, projection: u32,
     });
     twin!(twins: ProjectiveSplit { clip_from_world: Mat4 });
-    twin!(twins: MarchParameters { steps: u32, offset: f32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: MarchParameters { steps: u32, offset: f32, frame: u32, reserved: u32 });
+    twin!(twins: Reduction { factor: u32, tolerance: f32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: ResolveDepthParameters {
+        extinction: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
+    });
     twins
 }
 

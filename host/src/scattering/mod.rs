@@ -13,7 +13,9 @@ mod projective;
 mod projective_map;
 mod projective_prefiltered;
 mod rectification;
+mod resolution;
 mod settings;
+mod upsample;
 
 pub use composite::Composite;
 pub use light_form::LightForm;
@@ -27,10 +29,12 @@ pub use projective::{
 pub use projective_map::{ProjectiveMap, ProjectiveRaster, ProjectiveRasterBound};
 pub use projective_prefiltered::{ProjectivePrefiltered, ProjectivePrefilteredBound};
 pub use rectification::{Frame, Rectification};
+pub use resolution::{Reduced, Reduction, Resolution, TOLERANCE};
 pub use settings::{
     BasisFormat, Filtering, Reference, ScatteringError, Settings, SettingsError, Start, Weighting,
     check_size, epipole_near_picture,
 };
+pub use upsample::{Interpolated, Upsample};
 
 use crate::gpu::Gpu;
 use crate::pass::{Pass, PassError, Resource};

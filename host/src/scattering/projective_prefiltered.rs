@@ -57,7 +57,13 @@ impl ProjectivePrefiltered {
             settings,
             map,
             filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
-            evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate_projective", &evaluate, "fragment_evaluate_projective")?,
+            evaluate_pass: picture_pass(
+                gpu,
+                shaders,
+                "scattering/evaluate_projective",
+                &evaluate,
+                "fragment_evaluate_projective",
+            )?,
             sampler: Sampler::rows(gpu),
             bases: Texture::array(
                 gpu,

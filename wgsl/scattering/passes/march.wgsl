@@ -6,6 +6,8 @@
 // definition STEPS: rows by `steps` equal steps, average visibility.
 // definition PROJECTIVE: rows of a projective map, the exact sum over its texels; without STEPS and SHADOW_MAP.
 // definition SHADOW_MAP: march the standard shadow map by `steps` equal steps a ray.
+// definition JITTER_GRADIENT: each pixel's samples are shifted by interleaved gradient noise; with SHADOW_MAP or STEPS only.
+// definition JITTER_BLUE_NOISE: each pixel's samples are shifted by blue noise; with SHADOW_MAP or STEPS only.
 // binding camera: the camera, perspective (epipolar rows) or any.
 // binding light: the directional light.
 // binding medium: the medium.
@@ -15,11 +17,13 @@
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
 // binding rectified: the rectified map; rows only.
 // binding shadow_map: depth of the standard shadow map; with SHADOW_MAP only.
-// binding parameters: number of steps; with SHADOW_MAP or STEPS only.
+// binding parameters: number of steps, place of the samples, frame; with SHADOW_MAP or STEPS only.
+// binding blue_noise: tile of blue noise 0..1, repeated over the picture, r32float or r8unorm; with JITTER_BLUE_NOISE only.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
+#import airlight::core::jitter::{gradient_noise_offset, blue_noise_offset}
 #import airlight::core::light::Light
 #import airlight::core::picture::picture_corner
 #import airlight::scattering::march::{march_row, march_row_steps, march_shadow_map}
@@ -32,10 +36,11 @@
 struct MarchParameters {
     /// Steps a ray, at least 1.
     steps: u32,
-    /// Where in each step the sample lies, 0..1.
+    /// Where in each step the sample lies, 0..1; unused with jitter.
     offset: f32,
-    reserved_a: u32,
-    reserved_b: u32,
+    /// Number of the frame, for jitter; 0 is the static pattern.
+    frame: u32,
+    reserved: u32,
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -57,8 +62,22 @@ struct MarchParameters {
 #else ifdef STEPS
 @group(#{GROUP}) @binding(8) var<uniform> parameters: MarchParameters;
 #endif
+#ifdef JITTER_BLUE_NOISE
+@group(#{GROUP}) @binding(10) var blue_noise: texture_2d<f32>;
+#endif
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
+
+/// Where in each step the samples of a pixel lie, 0..1.
+fn step_offset(pixel: vec2<u32>, march: MarchParameters) -> f32 {
+#ifdef JITTER_GRADIENT
+    return gradient_noise_offset(pixel, march.frame);
+#else ifdef JITTER_BLUE_NOISE
+    return blue_noise_offset(blue_noise, pixel, march.frame);
+#else
+    return march.offset;
+#endif
+}
 
 /// Radiance, and mean visibility in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
@@ -86,7 +105,7 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #ifdef SHADOW_MAP
     let visibility = march_shadow_map(
         shadow_map, light, ray.origin, ray.direction, distance, extinction,
-        max(parameters.steps, 1u), parameters.offset
+        max(parameters.steps, 1u), step_offset(pixel, parameters)
     );
 #else ifdef PROJECTIVE
     let size = textureDimensions(rectified);
@@ -102,7 +121,9 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let optical_step = extinction * slice.radius_max / (width * max(ray.sine, 1e-6));
     let texels = width * radius / slice.radius_max;
 #ifdef STEPS
-    let visibility = march_row_steps(rectified, row, depth_from_ray(slice, ray), texels, parameters.steps);
+    let visibility = march_row_steps(
+        rectified, row, depth_from_ray(slice, ray), texels, parameters.steps, step_offset(pixel, parameters)
+    );
 #else
     let visibility = march_row(rectified, row, depth_from_ray(slice, ray), texels, optical_step);
 #endif

@@ -37,8 +37,9 @@ struct MarchParameters {
     steps: u32,
     /// Where in each step the sample lies, 0..1.
     offset: f32,
-    reserved_a: u32,
-    reserved_b: u32,
+    /// Unused here.
+    frame: u32,
+    reserved: u32,
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
