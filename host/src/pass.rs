@@ -229,7 +229,7 @@ impl Pass {
                 module: &module,
                 entry_point: Some(fragment),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &targets,
+                targets: if stages.target.is_some() { &targets } else { &[] },
             }),
             multiview_mask: None,
             cache: None,

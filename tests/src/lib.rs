@@ -5,6 +5,7 @@
 //!
 //! World space is right-handed, y up, in metres; angles are in radians; extinction is in 1/m.
 
+pub mod baselines;
 pub mod error;
 pub mod linear;
 pub mod parallel;

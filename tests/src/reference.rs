@@ -3,6 +3,7 @@
 
 pub mod camera;
 pub mod fourier;
+pub mod light;
 pub mod phase;
 pub mod prefix_sum;
 pub mod scattering;

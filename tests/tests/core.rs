@@ -8,22 +8,23 @@
 #[path = "support/gpu.rs"]
 mod gpu;
 
-use airlight::core::Scan;
+use airlight::core::{Scan, ShadowViews};
 use airlight::{Buffer, Texture};
 use airlight_tests::linear::Vec3;
 use airlight_tests::reference::camera::Camera as ReferenceCamera;
-use airlight_tests::reference::{fourier, phase, prefix_sum, scattering};
+use airlight_tests::reference::{fourier, light, phase, prefix_sum, scattering};
 use gpu::{Probe, Random, gpu, shaders};
 use std::f64::consts::PI;
 
 /// Every function of the core modules, by the test that holds it.
-const COVERED: [(&str, &[&str]); 7] = [
+const COVERED: [(&str, &[&str]); 12] = [
     (
         "camera",
         &[
             "ndc_from_pixel",
             "view_ray",
             "perspective_ray",
+            "towards_viewer",
             "distance_from_depth",
             "perspective_distance",
             "matrix_row",
@@ -51,9 +52,27 @@ const COVERED: [(&str, &[&str]); 7] = [
             "surface_bias",
         ],
     ),
-    ("light", &["shadow_position", "shadow_point"]),
+    (
+        "light",
+        &[
+            "direction_to_light",
+            "angular_falloff",
+            "light_falloff",
+            "texels_from_clip",
+            "point_from_texels",
+            "shadow_position",
+            "shadow_point",
+            // Takes a texture: tests/tests/stage.rs holds it by what it does to surfaces.
+            "light_texture_color",
+        ],
+    ),
     ("phase", &["isotropic", "henyey_greenstein"]),
     ("prefix_sum", &["row_weights", "row_weights_next", "running_mean", "one_minus_exp", "prefix_weight"]),
+    ("shadow_views", &["view_contains", "or_in_view", "clip_in_views", "view_position", "point_at_depth"]),
+    ("jitter", &["gradient_noise_offset", "blue_noise_offset"]),
+    ("ray_depth", &["ray_depth", "distance_on_ray", "depth_on_ray"]),
+    ("resolve_depth", &["averaging_extinction", "distance_of_transmittance"]),
+    ("picture", &["picture_corner"]),
 ];
 
 #[test]
@@ -602,6 +621,295 @@ fn points_go_to_the_shadow_map_and_back() {
     hold("shadow_point of it, of the scene's size", back, 1e-6);
 }
 
+const LIGHT: &str = "#import airlight::core::light::{
+        Light, shadow_position, shadow_point, direction_to_light, angular_falloff, light_falloff
+    }
+    fn matrix_at(first: u32) -> mat4x4<f32> {
+        var m: mat4x4<f32>;
+        for (var c = 0u; c < 4u; c++) {
+            let k = first + 4u * c;
+            m[c] = vec4<f32>(input(k), input(k + 1u), input(k + 2u), input(k + 3u));
+        }
+        return m;
+    }";
+
+#[test]
+fn points_go_to_the_map_of_a_spot_and_back() {
+    let probe = Probe {
+        head: LIGHT,
+        body: "let light = Light(matrix_at(0u), matrix_at(16u), vec3<f32>(0.0), 1.0, vec3<f32>(0.0), 1u,
+                   vec3<f32>(0.0), 0.0, vec2<f32>(0.0), 0.0, 0.0);
+               let at = shadow_position(light, vec2<f32>(512.0, 256.0), vec3<f32>(input(32u), input(33u), input(34u)));
+               let back = shadow_point(light, vec2<f32>(512.0, 256.0), at.xy, at.z);
+               output(0u, at.x); output(1u, at.y); output(2u, at.z);
+               output(3u, back.x); output(4u, back.y); output(5u, back.z);",
+        inputs: 35,
+        outputs: 6,
+    };
+    let mut random = Random(37);
+    let (mut inputs, mut cases) = (Vec::new(), Vec::new());
+    for case in 0..1000 {
+        // A spot's map is the picture of a camera at its place.
+        let eye = random.direction() * random.between(0.0, 10.0);
+        let axis = random.direction();
+        let half = random.between(0.1, 1.3);
+        let camera = ReferenceCamera::perspective(&airlight_tests::reference::camera::View {
+            eye,
+            target: eye + axis,
+            up: random.direction(),
+            fov_y: 2.0 * half,
+            aspect: 1.0,
+            near: 0.05,
+            far: 40.0,
+            reversed: false,
+        });
+        let across = random.direction().without(axis).normalised() * (half.tan() * random.unit());
+        let distance = random.between(0.1, 30.0);
+        let behind = case % 8 == 0;
+        let point = eye + (axis + across) * if behind { -distance } else { distance };
+        let point = gpu::vector(gpu::host_vector(point));
+        inputs.extend(gpu::host_matrix(camera.clip_from_world).to_cols_array());
+        inputs.extend(gpu::host_matrix(camera.world_from_clip).to_cols_array());
+        inputs.extend(gpu::host_vector(point).to_array());
+        cases.push((camera.clip_from_world, eye, point, distance, behind));
+    }
+    let found = probe.run(&inputs);
+    let (mut forth, mut depth, mut back) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for ((matrix, eye, point, distance, behind), found) in cases.iter().zip(found.chunks_exact(6)) {
+        if *behind {
+            assert!(found[0] < 0.0 && found[1] < 0.0 && found.iter().all(|x| x.is_finite()), "{found:?}");
+            continue;
+        }
+        let [x, y, z, w] = matrix.apply_point(*point);
+        // Cancellation: the f32 matrix holds the eye's place to an ulp of its size.
+        let scale = 1.0 + point.length().max(eye.length()) / distance;
+        let texels = (f(found[0]) / 512.0 - (0.5 + 0.5 * x / w)).abs();
+        let texels = texels.max((f(found[1]) / 256.0 - (0.5 - 0.5 * y / w)).abs());
+        forth = forth.max(texels / scale);
+        depth = depth.max((f(found[2]) - z / w).abs() * w / scale);
+        // Depth is steep near the light and flat far away: an ulp of it is distance^2 / near metres.
+        let room = 1.0 + eye.length() + distance + distance * distance / 0.05;
+        back = back.max((triple(&found[3..]) - *point).length() / room);
+    }
+    hold("shadow_position of a spot, of the map", forth, 3e-6);
+    hold("depth of a spot, times metres", depth, 3e-6);
+    hold("shadow_point of a spot, of an ulp's reach", back, 1e-6);
+}
+
+#[test]
+fn light_falls_off_by_cones_and_inverse_squares() {
+    let probe = Probe {
+        head: LIGHT,
+        body: "let m = mat4x4<f32>();
+               let light = Light(m, m, vec3<f32>(input(0u), input(1u), input(2u)), 1.0, vec3<f32>(0.0), u32(input(3u)),
+                   vec3<f32>(input(4u), input(5u), input(6u)), input(7u), vec2<f32>(input(8u), input(9u)), 0.0, 0.0);
+               let point = vec3<f32>(input(10u), input(11u), input(12u));
+               let towards = direction_to_light(light, point);
+               output(0u, towards.x); output(1u, towards.y); output(2u, towards.z);
+               output(3u, angular_falloff(light, towards));
+               output(4u, light_falloff(light, point));",
+        inputs: 13,
+        outputs: 5,
+    };
+    let mut random = Random(41);
+    let (mut inputs, mut cases) = (Vec::new(), Vec::new());
+    let mut record =
+        |direction: Vec3, kind: u32, position: Vec3, radius: f64, cosines: [f64; 2], point: Vec3| {
+            inputs.extend(gpu::host_vector(direction).to_array());
+            inputs.push(kind as f32);
+            inputs.extend(gpu::host_vector(position).to_array());
+            inputs.extend([radius as f32, cosines[0] as f32, cosines[1] as f32]);
+            inputs.extend(gpu::host_vector(point).to_array());
+        };
+    for case in 0..3000_u32 {
+        let axis = random.direction();
+        let position = gpu::vector(gpu::host_vector(random.direction() * random.between(0.0, 5.0)));
+        let radius = random.magnitude(1e-3, 1.0);
+        let outer = random.between(0.1, 1.3);
+        let inner = outer * random.between(0.0, 0.95);
+        // Most points in the cone's neighbourhood, some anywhere.
+        let across = random.direction().without(axis).normalised() * (outer.tan() * random.between(0.0, 1.3));
+        let direction = if case % 5 == 0 { random.direction() } else { (axis + across).normalised() };
+        let point = gpu::vector(gpu::host_vector(position + direction * random.magnitude(0.05, 50.0)));
+        let kind = case % 3;
+        record(-axis, kind, position, radius, [inner.cos(), outer.cos()], point);
+        cases.push((
+            match kind {
+                0 => light::Light::Directional { towards: -axis },
+                1 => light::Light::Spot { position, axis, inner, outer, radius },
+                _ => light::Light::Point { position, radius },
+            },
+            point,
+            outer,
+            inner,
+        ));
+    }
+    // At the light itself, far beyond every scene, and with one edge for both cones: finite and in range.
+    let y = Vec3::new(0.0, 1.0, 0.0);
+    let o = Vec3::new(0.0, 0.0, 0.0);
+    for (position, point, radius) in
+        [(o, o, 0.0), (y, y, 0.1), (o, y * 1e30, 0.1), (o, y * -1e30, 0.0), (o, y, 0.0)]
+    {
+        record(-y, 1, position, radius, [0.9, 0.9], point);
+        record(-y, 2, position, radius, [0.0, 0.0], point);
+    }
+    let found = probe.run(&inputs);
+    let (mut towards, mut cone, mut whole) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for ((light, point, outer, inner), found) in cases.iter().zip(found.chunks_exact(5)) {
+        let expected = light.towards(*point);
+        towards = towards.max((triple(found) - expected).length());
+        let cosine = match light {
+            light::Light::Spot { axis, .. } => -expected.dot(*axis),
+            _ => 1.0,
+        };
+        // Cosines are rounded to f32 before their narrow difference divides.
+        let steep = 1.0 / (inner.cos() - outer.cos());
+        cone = cone.max((f(found[3]) - light.cone(cosine.clamp(-1.0, 1.0).acos())).abs() / (1.0 + steep));
+        let (exact, open) = (light.irradiance(*point), 1.0 + steep);
+        let free = match light {
+            light::Light::Directional { .. } => 1.0,
+            light::Light::Spot { position, radius, .. } | light::Light::Point { position, radius } => {
+                1.0 / ((*point - *position).dot(*point - *position) + radius * radius)
+            }
+        };
+        whole = whole.max((f(found[4]) - exact).abs() / (free * open));
+        if cosine < outer.cos() - 1e-6 {
+            assert_eq!((found[3], found[4]), (0.0, 0.0), "outside the cone");
+        }
+    }
+    hold("direction_to_light", towards, 4e-7 * 100.0);
+    hold("angular_falloff, of its steepness", cone, 2e-6);
+    hold("light_falloff, relative, of its steepness", whole, 4e-6);
+    for found in found[5 * cases.len()..].chunks_exact(5) {
+        assert!(found.iter().all(|x| x.is_finite()) && (0.0..=1.0).contains(&found[3]), "{found:?}");
+    }
+}
+
+#[test]
+fn light_rays_find_their_view() {
+    let probe = Probe {
+        head: "#import airlight::core::shadow_views::{
+                ShadowViews, clip_in_views, view_position, point_at_depth, view_contains, or_in_view
+            }
+            fn matrix_at(first: u32) -> mat4x4<f32> {
+                var m: mat4x4<f32>;
+                for (var c = 0u; c < 4u; c++) {
+                    let k = first + 4u * c;
+                    m[c] = vec4<f32>(input(k), input(k + 1u), input(k + 2u), input(k + 3u));
+                }
+                return m;
+            }",
+        body: "var views: ShadowViews;
+               for (var k = 0u; k < 6u; k++) {
+                   views.clip_from_world[k] = matrix_at(16u * k);
+                   views.world_from_clip[k] = matrix_at(96u + 16u * k);
+               }
+               views.count = u32(input(192u));
+               let point = vec3<f32>(input(193u), input(194u), input(195u));
+               let at = view_position(views, vec2<f32>(512.0, 256.0), point);
+               output(0u, f32(at.inside)); output(1u, f32(at.view));
+               output(2u, at.at.x / 512.0); output(3u, at.at.y / 256.0); output(4u, at.at.z);
+               let back = point_at_depth(views.clip_from_world[at.view], views.world_from_clip[at.view], point, at.at.z);
+               output(5u, back.x); output(6u, back.y); output(7u, back.z);",
+        inputs: 196,
+        outputs: 8,
+    };
+    let mut random = Random(43);
+    let (mut inputs, mut cases) = (Vec::new(), Vec::new());
+    for case in 0..1500 {
+        let centre = random.direction() * random.between(0.0, 4.0);
+        let cube = case % 2 == 0;
+        let views = if cube {
+            ShadowViews::cube(gpu::host_vector(centre), 0.05, 30.0).unwrap()
+        } else {
+            // Nested boxes, as cascades are.
+            let towards = random.direction();
+            let count = 1 + random.below(6);
+            let mut views = ShadowViews::cube(glam::Vec3::ZERO, 0.1, 1.0).unwrap();
+            views.count = count as u32;
+            for view in 0..count {
+                let matrix = gpu::light_matrix(towards, centre, 2.0 * (view + 1) as f64, 1.0);
+                views.clip_from_world[view] = gpu::host_matrix(matrix);
+                views.world_from_clip[view] = gpu::host_matrix(matrix.inverse().unwrap());
+            }
+            views
+        };
+        let point = centre + random.direction() * random.magnitude(0.2, 20.0);
+        let point = gpu::host_vector(point);
+        for matrix in views.clip_from_world.iter().chain(&views.world_from_clip) {
+            inputs.extend(matrix.to_cols_array());
+        }
+        inputs.push(views.count as f32);
+        inputs.extend(point.to_array());
+        cases.push((views, gpu::vector(point), cube));
+    }
+    let found = probe.run(&inputs);
+    let (mut places, mut back, mut hits, mut skipped) = (0.0_f64, 0.0_f64, [0; 2], 0);
+    for ((views, point, cube), found) in cases.iter().zip(found.chunks_exact(8)) {
+        let matrices: Vec<_> =
+            views.clip_from_world[..views.count as usize].iter().map(|m| gpu::matrix(*m)).collect();
+        let (expected, margin) = light::first_view(&matrices, *point);
+        if margin < 1e-4 {
+            skipped += 1;
+            continue;
+        }
+        assert_eq!(found[0] == 1.0, expected.is_some(), "{point:?}");
+        hits[usize::from(expected.is_some())] += 1;
+        assert!(expected.is_some() || !cube);
+        let Some((view, [x, y, z])) = expected else { continue };
+        assert_eq!(found[1] as usize, view);
+        let errors = [f(found[2]) - (0.5 + 0.5 * x), f(found[3]) - (0.5 - 0.5 * y), f(found[4]) - z];
+        places = errors.iter().fold(places, |worst, error| worst.max(error.abs()));
+        let room = if *cube { 1.0 + point.length().powi(2) / 0.05 } else { 1.0 + point.length() };
+        back = back.max((triple(&found[5..]) - *point).length() / room);
+    }
+    assert!(hits[0] > 50 && hits[1] > 500 && skipped < 50, "{hits:?} {skipped}");
+    hold("view_position, of the map", places, 2e-5);
+    hold("point_at_depth, of an ulp's reach", back, 2e-6);
+}
+
+#[test]
+fn viewers_are_where_the_camera_says() {
+    let probe = Probe {
+        head: &CAMERA.replace("ndc_from_pixel,", "ndc_from_pixel, towards_viewer,"),
+        body: "output_vector(0u, towards_viewer(camera_at(), vec3<f32>(input(40u), input(41u), input(42u))));",
+        inputs: 43,
+        outputs: 3,
+    };
+    let mut random = Random(47);
+    let (mut inputs, mut cases) = (Vec::new(), Vec::new());
+    for case in 0..400 {
+        let point = random.direction() * random.between(0.0, 9.0);
+        let (mut camera, expected);
+        if case % 2 == 0 {
+            let reference = random.camera(1.5);
+            camera = gpu::host_camera(&reference, [96, 64]);
+            expected = (reference.eye - point).normalised();
+        } else {
+            let towards = random.direction();
+            let far_depth = if case % 4 == 1 { 0.0 } else { 1.0 };
+            let matrix = gpu::light_matrix(towards, point, random.between(1.0, 9.0), far_depth);
+            camera = gpu::host_camera(&random.camera(1.5), [96, 64]);
+            camera.clip_from_world = gpu::host_matrix(matrix);
+            camera.world_from_clip = gpu::host_matrix(matrix.inverse().unwrap());
+            (camera.near_depth, camera.far_depth) = (1.0 - far_depth as f32, far_depth as f32);
+            camera.projection = 1;
+            expected = towards;
+        }
+        inputs.extend(camera_words(&camera));
+        inputs.extend(gpu::host_vector(point).to_array());
+        cases.push(expected);
+    }
+    let found = probe.run(&inputs);
+    let error = worst(
+        cases
+            .iter()
+            .zip(found.chunks_exact(3))
+            .map(|(e, found)| ((triple(found).normalised() - *e).length(), 0.0)),
+    );
+    hold("towards_viewer", error, 1e-4);
+}
+
 // Prefix sums.
 
 #[test]
@@ -832,4 +1140,277 @@ fn textures_come_back_as_they_went() {
         assert_eq!(back.len(), values.len());
         assert!(texture.write(gpu(), &values[1..]).is_err(), "{format:?}");
     }
+}
+
+// Jitter.
+
+/// Gradient noise of pixels in frames: x, y, frame.
+fn gradient_noise(places: &[[u32; 3]]) -> Vec<f64> {
+    let probe = Probe {
+        head: "#import airlight::core::jitter::gradient_noise_offset",
+        body: "output(0u, gradient_noise_offset(vec2<u32>(u32(input(0u)), u32(input(1u))), u32(input(2u))));",
+        inputs: 3,
+        outputs: 1,
+    };
+    let inputs: Vec<f32> = places.iter().flatten().map(|value| *value as f32).collect();
+    probe.run(&inputs).into_iter().map(f).collect()
+}
+
+/// Distance on the circle of circumference one.
+fn around(a: f64, b: f64) -> f64 {
+    let d = (a - b).abs();
+    d.min(1.0 - d)
+}
+
+#[test]
+fn gradient_noise_is_that_of_jimenez() {
+    let mut random = Random(19);
+    let places: Vec<[u32; 3]> = (0..20_000)
+        .map(|_| [random.below(4096) as u32, random.below(4096) as u32, random.below(200) as u32])
+        .collect();
+    let found = gradient_noise(&places);
+    let error = worst(places.iter().zip(&found).map(|([x, y, frame], found)| {
+        assert!((0.0..1.0).contains(found), "{found}");
+        let at = [x, y].map(|c| f64::from(*c) + 5.588238 * f64::from(frame % 64));
+        let expected = (52.9829189 * (0.06711056 * at[0] + 0.00583715 * at[1]).fract()).fract();
+        (around(*found, expected), 0.0)
+    }));
+    // The dot product is up to 330, rounded to 3e-5, and then magnified 53 times.
+    hold("gradient_noise_offset, around the circle", error, 3e-3);
+}
+
+#[test]
+fn gradient_noise_is_uniform_in_space_and_in_time() {
+    let picture: Vec<[u32; 3]> = (0..256 * 256).map(|i| [i % 256, i / 256, 0]).collect();
+    let values = gradient_noise(&picture);
+    let mut sorted = values.clone();
+    sorted.sort_by(f64::total_cmp);
+    // Kolmogorov's distance of 65536 random numbers would be below 0.0064 with a confidence of 99 %.
+    let distance = worst(sorted.iter().enumerate().map(|(i, v)| (*v, (i as f64 + 0.5) / 65536.0)));
+    hold("gradient noise, distance from the uniform distribution", distance, 0.0064);
+    // The means of 3x3 pixels: of random numbers they would scatter by 0.096.
+    let mut squares = 0.0;
+    for y in 0..254 {
+        for x in 0..254 {
+            let mean = (0..9).map(|i| values[(y + i / 3) * 256 + x + i % 3]).sum::<f64>() / 9.0;
+            squares += (mean - 0.5).powi(2) / (254.0 * 254.0);
+        }
+    }
+    hold("gradient noise, scatter of the means of 3x3 pixels", squares.sqrt(), 0.04);
+    // The means of frames: of random numbers they would scatter by 0.289 over the root of their number.
+    for (frames, budget) in [(8, 0.06), (16, 0.04), (64, 0.02)] {
+        let places: Vec<[u32; 3]> =
+            (0..32 * 32 * frames).map(|i| [i / frames % 32, i / frames / 32, i % frames]).collect();
+        let means = gradient_noise(&places);
+        let means = means.chunks_exact(frames as usize).map(|v| v.iter().sum::<f64>() / f64::from(frames));
+        let scatter = (means.map(|m| (m - 0.5).powi(2)).sum::<f64>() / 1024.0).sqrt();
+        hold(&format!("gradient noise, scatter of the means of {frames} frames"), scatter, budget);
+    }
+}
+
+#[test]
+fn blue_noise_turns_by_the_golden_ratio() {
+    let folder = gpu::copy_of_wgsl();
+    let text = "#import airlight::core::jitter::blue_noise_offset
+        @group(#{GROUP}) @binding(0) var tile: texture_2d<f32>;
+        @group(#{GROUP}) @binding(1) var<storage, read> frames: array<u32>;
+        @group(#{GROUP}) @binding(2) var<storage, read_write> outputs: array<f32>;
+        @compute @workgroup_size(64)
+        fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
+            let pixel = vec2<u32>(id.x % 8u, id.x / 8u);
+            if id.x < 64u {
+                for (var i = 0u; i < arrayLength(&frames); i++) {
+                    outputs[64u * i + id.x] = blue_noise_offset(tile, pixel, frames[i]);
+                }
+            }
+        }";
+    std::fs::write(folder.path().join("core/passes/probe.wgsl"), text).unwrap();
+    let library = airlight::validate::Library::from_directory(folder.path()).unwrap();
+    let shaders = airlight::Shaders::from_library(library);
+    let pass =
+        airlight::Pass::compute_with(gpu(), &shaders, "core/probe", &airlight::validate::Definitions::new())
+            .unwrap();
+    // A tile of 4x4, repeated; one value is not a number, one is out of range, one is 1.
+    let mut values: Vec<f32> = (0..16).map(|i| (i as f32 + 0.5) / 16.0).collect();
+    (values[3], values[5], values[6]) = (f32::NAN, 1.75, 1.0);
+    let tile = gpu::texture([4, 4], wgpu::TextureFormat::R32Float, &values);
+    let mut frames: Vec<u32> = (0..64).collect();
+    frames.extend([1_000_003, u32::MAX]);
+    let bytes: Vec<u8> = frames.iter().flat_map(|frame| frame.to_le_bytes()).collect();
+    let frame_buffer = Buffer::with_bytes(gpu(), &bytes, wgpu::BufferUsages::STORAGE);
+    let outputs = Buffer::storage(gpu(), 64 * 4 * frames.len() as u64);
+    let resources =
+        [("tile", (&tile).into()), ("frames", (&frame_buffer).into()), ("outputs", (&outputs).into())];
+    let bound = pass.bind(gpu(), &resources).unwrap();
+    let mut encoder = gpu().encoder();
+    pass.dispatch(&mut encoder, &bound, [64, 1, 1]);
+    gpu().submit(encoder).unwrap();
+    let found = outputs.read_floats(gpu()).unwrap();
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut first, mut any) = (0.0_f64, 0.0_f64);
+    for (i, frame) in frames.iter().enumerate() {
+        // Turns are counted in units of 2^-32, off by half a unit a frame.
+        let turn = f64::from(frame.wrapping_mul(2_654_435_769)) / 4_294_967_296.0;
+        for pixel in 0..64 {
+            let value = values[pixel / 8 % 4 * 4 + pixel % 4];
+            let value = if value.is_finite() { f(value).clamp(0.0, 1.0) } else { 0.0 };
+            let turned = f(found[64 * i + pixel]);
+            assert!((0.0..1.0).contains(&turned), "{turned}");
+            any = any.max(around(turned, (value + turn).fract()));
+            if i < 64 {
+                first = first.max(around(turned, (value + f64::from(*frame) * golden).fract()));
+            }
+        }
+    }
+    hold("blue_noise_offset, around the circle, 64 frames", first, 2e-7);
+    hold("blue_noise_offset, around the circle, any frame", any, 2e-7);
+    // The mean over n frames, n a Fibonacci number: the values lie within 1 / (sqrt(5) n) of n even places,
+    // so that their mean is off by (1 + 1 / sqrt(5)) / (2 n) at most; random ones would scatter by 0.289 / sqrt(n).
+    for frames in [8, 21, 55] {
+        let budget = 0.5 * (1.0 + 0.2_f64.sqrt()) / frames as f64;
+        let off =
+            worst((0..64).map(|pixel| {
+                ((0..frames).map(|i| f(found[64 * i + pixel])).sum::<f64>() / frames as f64, 0.5)
+            }));
+        hold(&format!("blue noise, greatest error of the mean of {frames} frames"), off, budget);
+    }
+}
+
+// Depths on a ray, and of several samples.
+
+#[test]
+fn depths_and_distances_on_a_ray_are_those_of_the_camera() {
+    let head = CAMERA.replace(
+        "#import airlight::core::camera",
+        "#import airlight::core::ray_depth::{ray_depth, distance_on_ray, depth_on_ray}
+         #import airlight::core::camera",
+    );
+    let probe = Probe {
+        head: &head,
+        body: "let camera = camera_at();
+               let ndc = vec2<f32>(input(40u), input(41u));
+               let ray = ray_depth(camera, view_ray(camera, ndc), ndc);
+               output(0u, distance_on_ray(ray, input(42u), 500.0));
+               output(1u, depth_on_ray(ray, input(43u)));
+               output(2u, distance_on_ray(ray, depth_on_ray(ray, input(43u)), 500.0));
+               output(3u, distance_on_ray(ray, camera.far_depth, 500.0));
+               output(4u, depth_on_ray(ray, 0.0));
+               output(5u, depth_on_ray(ray, 1e30));",
+        inputs: 44,
+        outputs: 6,
+    };
+    let mut random = Random(53);
+    let (mut inputs, mut cases) = (Vec::new(), Vec::new());
+    for index in 0..2000 {
+        let ndc = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)].map(|x| f(x as f32));
+        if index % 4 == 0 {
+            let (towards, centre) = (random.direction(), random.direction() * random.between(0.0, 20.0));
+            let half = random.between(1.0, 30.0);
+            let far_depth = if random.unit() < 0.5 { 0.0 } else { 1.0 };
+            let clip = gpu::light_matrix(towards, centre, half, far_depth);
+            let camera = airlight::core::Camera {
+                clip_from_world: gpu::host_matrix(clip),
+                world_from_clip: gpu::host_matrix(clip.inverse().unwrap()),
+                eye: glam::Vec3::ZERO,
+                near_depth: 1.0 - far_depth as f32,
+                viewport: glam::Vec2::ONE,
+                far_depth: far_depth as f32,
+                projection: 1,
+            };
+            let distance = random.between(0.01, 1.99) * half;
+            let along = distance / (2.0 * half);
+            let depth = if far_depth > 0.5 { along } else { 1.0 - along };
+            inputs.extend(camera_words(&camera));
+            inputs.extend([ndc[0] as f32, ndc[1] as f32, depth as f32, distance as f32]);
+            let size = half + centre.length();
+            cases.push((
+                distance,
+                2e-6 * size,
+                depth,
+                2e-6 * size / half,
+                2.0 * half,
+                far_depth,
+                size / half,
+            ));
+        } else {
+            let camera = random.camera(1.5);
+            let direction = camera.ray(ndc);
+            let distance = random.magnitude(0.5, 100.0).min(0.9 * camera.far);
+            let depth = camera.project(camera.eye + direction * distance).unwrap()[2];
+            inputs.extend(camera_words(&gpu::host_camera(&camera, [96, 64])));
+            inputs.extend([ndc[0] as f32, ndc[1] as f32, depth as f32, distance as f32]);
+            // As for distance_from_depth: forward depth resolves what f32 resolves next to 1, and the far
+            // plane is unprojected and the eye taken off.
+            let cancelled =
+                camera.eye.length() / if camera.far_depth > 0.5 { camera.near } else { camera.far };
+            let resolved =
+                if camera.far_depth > 0.5 { 4e-7 * distance * distance / camera.near } else { 0.0 };
+            let budget =
+                2e-6 * (distance + camera.eye.length()) + resolved + distance * 2e-7 * cancelled + 1e-5;
+            let of_depth = 3e-7 + (2e-6 + 2e-7 * cancelled) * (1.0 - depth).min(depth).abs();
+            let sky = camera.far / direction.dot(camera.forward);
+            cases.push((distance, budget, depth, of_depth, sky, camera.far_depth, 0.0));
+        }
+    }
+    let found = probe.run(&inputs);
+    let mut errors = [0.0_f64; 4];
+    for ((distance, budget, depth, of_depth, sky, far_depth, size), found) in
+        cases.iter().zip(found.chunks_exact(6))
+    {
+        let mut note = |kind: usize, error: f64| {
+            if error > errors[kind] || error.is_nan() {
+                errors[kind] = error;
+            }
+        };
+        note(0, (f(found[0]) - distance).abs() / budget);
+        note(1, (f(found[1]) - depth).abs() / of_depth);
+        note(2, (f(found[2]) - distance).abs() / (2.0 * budget));
+        let plane = if *far_depth > 0.5 { 1e-3 } else { 1e-4 };
+        note(3, (f(found[3]) / sky.min(500.0) - 1.0).abs() / plane);
+        assert!((f(found[4]) - (1.0 - far_depth)).abs() <= 2e-6 * size, "depth at the eye: {}", found[4]);
+        assert!((f(found[5]) - far_depth).abs() < 1e-6, "depth at infinity: {}", found[5]);
+    }
+    for (kind, error) in
+        ["distance_on_ray", "depth_on_ray", "there and back", "of the far plane"].iter().zip(errors)
+    {
+        hold(&format!("{kind}, in budgets"), error, 1.0);
+    }
+}
+
+#[test]
+fn distances_of_mean_transmittance() {
+    let probe = Probe {
+        head: "#import airlight::core::resolve_depth::{averaging_extinction, distance_of_transmittance}",
+        body: "let nearest = min(input(0u), input(1u));
+               let farthest = max(input(0u), input(1u));
+               let extinction = averaging_extinction(input(2u), nearest, farthest);
+               let mean = 0.5 * (exp(-extinction * (input(0u) - nearest)) + exp(-extinction * (input(1u) - nearest)));
+               output(0u, distance_of_transmittance(nearest, extinction, mean));
+               output(1u, distance_of_transmittance(nearest, extinction, 0.0));",
+        inputs: 3,
+        outputs: 2,
+    };
+    let mut random = Random(61);
+    let mut inputs: Vec<f32> = (0..2000)
+        .flat_map(|_| {
+            let extinction = if random.unit() < 0.2 { 0.0 } else { random.magnitude(1e-9, 1e2) };
+            [random.magnitude(1e-2, 1e3), random.magnitude(1e-2, 1e3), extinction].map(|x| x as f32)
+        })
+        .collect();
+    inputs.extend([5.0, 5.0, 0.0, 0.0, 0.0, 1e6, 0.0, 1e7, 1e6]);
+    let found = probe.run(&inputs);
+    let error = worst(inputs.chunks_exact(3).zip(found.chunks_exact(2)).map(|(input, found)| {
+        let [a, b, extinction] = [0, 1, 2].map(|i| f(input[i]));
+        assert!(found.iter().all(|x| x.is_finite()), "{input:?}: {found:?}");
+        let spread = (a - b).abs();
+        let expected = if extinction * spread < 1e-7 {
+            0.5 * (a + b)
+        } else {
+            let nearest = a.min(b);
+            // ln((1 + e^-x) / 2) without cancellation.
+            nearest - (0.5 * (-extinction * spread).exp_m1()).ln_1p() / extinction
+        };
+        ((f(found[0]) - expected).abs() / (2e-4 * spread + 2e-7 * a.max(b) + 1e-30), 0.0)
+    }));
+    hold("distance_of_transmittance, in 2e-4 of the spread", error, 1.0);
 }

@@ -3,8 +3,8 @@
 //! through encase, and its bytes are looked for at the offset that reflection reports.
 #![allow(clippy::unwrap_used)]
 
-use airlight::core::{Camera, Light, MAX_VIEWS, ShadowViews, Sky, TonemapParameters};
-use airlight::scattering::{Frame, MarchParameters, Medium};
+use airlight::core::{Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, TonemapParameters};
+use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -172,7 +172,16 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         axis_b: Vec3, rows: f32, eye: Vec3, wraps: f32,
         ray_light: Vec3, reserved_a: f32, ray_a: Vec3, reserved_b: f32, ray_b: Vec3, reserved_c: f32, ray_scale: Vec4,
     });
-    twin!(twins: MarchParameters { steps: u32, offset: f32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: ProjectiveRows {
+        origin: Vec3, near: f32, along: Vec3, tilt: f32, across: Vec3, row_min: f32, away: Vec3, row_span: f32,
+        bounds: Vec4, depth_min: f32, depth_span: f32, splits: u32, projection: u32,
+    });
+    twin!(twins: ProjectiveSplit { clip_from_world: Mat4 });
+    twin!(twins: MarchParameters { steps: u32, offset: f32, frame: u32, reserved: u32 });
+    twin!(twins: Reduction { factor: u32, tolerance: f32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: ResolveDepthParameters {
+        extinction: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
+    });
     twins
 }
 

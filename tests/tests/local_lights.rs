@@ -36,7 +36,12 @@ struct Case {
 }
 
 impl Case {
-    fn new(name: &'static str, light: Lighting, texture: Option<LightImage>, cascades: Option<Cascades>) -> Self {
+    fn new(
+        name: &'static str,
+        light: Lighting,
+        texture: Option<LightImage>,
+        cascades: Option<Cascades>,
+    ) -> Self {
         let scene = gpu::torus_over_plane();
         let stage = Stage::new(
             gpu(),
@@ -128,7 +133,8 @@ impl Case {
             .collect();
         let camera = self.camera();
         let depth = self.stage.pictures.depth.read(gpu()).unwrap();
-        let rgb: Vec<f32> = self.texture.iter().flat_map(|t| t.texels().iter().flat_map(|texel| texel.to_array())).collect();
+        let rgb: Vec<f32> =
+            self.texture.iter().flat_map(|t| t.texels().iter().flat_map(|texel| texel.to_array())).collect();
         let scene = LocalScene {
             camera: &camera,
             light: self.light(),
@@ -316,7 +322,12 @@ fn without_blockers_radiance_is_that_of_the_airlight_integral() {
         let (_, found) = prefiltered(&case, case.settings());
         let error = relative_rmse(&found, &exact);
         let march = relative_rmse(&marched(&case, 256, Weighting::Transmittance), &exact);
-        println!("{} without blockers: prefiltered {:.2} %, marched {:.2} %", case.name, 100.0 * error, 100.0 * march);
+        println!(
+            "{} without blockers: prefiltered {:.2} %, marched {:.2} %",
+            case.name,
+            100.0 * error,
+            100.0 * march
+        );
         assert!(error < 0.03, "{}: {error}", case.name);
         assert!(march < 0.01, "{}: {march}", case.name);
     }
@@ -516,9 +527,9 @@ fn wild_light(random: &mut Random, camera: &ReferenceCamera, point: bool) -> Lig
     };
     let outer = random.between(0.5, 80.0) as f32;
     let inner = if random.unit() < 0.2 { outer } else { outer * random.unit() as f32 };
-    Light::spot(position, position + axis * 10.0, outer, inner, bright, radius, near, far).unwrap_or_else(|_| {
-        Light::spot(Vec3::ZERO, Vec3::X, outer, inner, bright, radius, near, far).unwrap()
-    })
+    Light::spot(position, position + axis * 10.0, outer, inner, bright, radius, near, far).unwrap_or_else(
+        |_| Light::spot(Vec3::ZERO, Vec3::X, outer, inner, bright, radius, near, far).unwrap(),
+    )
 }
 
 #[test]
@@ -546,7 +557,8 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let shadow_map = gpu::texture([8, 8], R32Float, &[1.0; 64]);
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
     let shadow_maps = Texture::array(gpu(), [8, 8, 6], R32Float, usage);
-    let color = Texture::new(gpu(), [4, 4], wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
+    let color =
+        Texture::new(gpu(), [4, 4], wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
     let inputs = Inputs {
         camera: &camera_buffer,
         light: &light_buffer,
@@ -560,23 +572,25 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let methods: Vec<_> = base
         .iter()
         .flat_map(|form| {
-            [(Weighting::Average, true), (Weighting::Transmittance, false)].map(|(weighting, epipole_march)| {
-                let settings = Settings {
-                    bases: 8,
-                    map: MAP,
-                    format: BasisFormat::Rgba16Float,
-                    weighting,
-                    epipole_march,
-                    light: *form,
-                    ..Settings::default()
-                };
-                let method = Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap();
-                let bound = method.bind(gpu(), &inputs).unwrap();
-                let march = March::of_light(gpu(), shaders(), *form, 24, weighting, PICTURE).unwrap();
-                let along = airlight::scattering::Along::ShadowMap { steps: 24 };
-                let march_bound = march.bind(gpu(), &inputs, &along).unwrap();
-                (*form, method, bound, march, march_bound)
-            })
+            [(Weighting::Average, true), (Weighting::Transmittance, false)].map(
+                |(weighting, epipole_march)| {
+                    let settings = Settings {
+                        bases: 8,
+                        map: MAP,
+                        format: BasisFormat::Rgba16Float,
+                        weighting,
+                        epipole_march,
+                        light: *form,
+                        ..Settings::default()
+                    };
+                    let method = Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap();
+                    let bound = method.bind(gpu(), &inputs).unwrap();
+                    let march = March::of_light(gpu(), shaders(), *form, 24, weighting, PICTURE).unwrap();
+                    let along = airlight::scattering::Along::ShadowMap { steps: 24 };
+                    let march_bound = march.bind(gpu(), &inputs, &along).unwrap();
+                    (*form, method, bound, march, march_bound)
+                },
+            )
         })
         .collect();
     let mut bright = 0;
@@ -641,7 +655,10 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
         }
         for slice in method.rectification.slices.read(gpu()).unwrap().chunks_exact(4) {
             let turn = std::f32::consts::PI * 1.000_001;
-            let fine = slice.iter().all(|v| v.is_finite()) && 0.0 <= slice[0] && slice[0] < slice[1] && slice[1] <= turn;
+            let fine = slice.iter().all(|v| v.is_finite())
+                && 0.0 <= slice[0]
+                && slice[0] < slice[1]
+                && slice[1] <= turn;
             assert!(fine, "slice: {slice:?}; {}", name());
             let local = 0.0 <= slice[2] && slice[2] < slice[3] && slice[3] <= turn;
             assert!(local || !form.local(), "slice: {slice:?}; {}", name());

@@ -141,7 +141,7 @@ fn a_buffer_that_is_too_small_is_refused() {
     assert!(text.contains("160 bytes") && text.contains("a buffer of 16 bytes"), "{text}");
     let rectified = Texture::storage(gpu(), [8, 8], R32Float);
     let slices = Pass::compute(gpu(), shaders(), "scattering/slices", "default").unwrap();
-    let big = Buffer::storage(gpu(), 160);
+    let big = Buffer::storage(gpu(), 192);
     let resources: [(&str, Resource<'_>); 5] = [
         ("camera", (&big).into()),
         ("light", (&big).into()),
@@ -169,7 +169,7 @@ fn samplers_are_told_apart() {
         samples: 1,
     };
     let pass = Pass::render(gpu(), &composed, &stages).unwrap();
-    let uniform = Buffer::storage(gpu(), 160);
+    let uniform = Buffer::storage(gpu(), 192);
     let map = Texture::target(gpu(), [8, 8], wgpu::TextureFormat::Depth32Float);
     let rows = Sampler::rows(gpu());
     let resources: [(&str, Resource<'_>); 5] = [

@@ -67,7 +67,8 @@ fn exact(case: &Case) -> f64 {
     };
     const HALVES: usize = 4000;
     let step = (to - from) / (2 * HALVES) as f64;
-    let sum: f64 = (1..2 * HALVES).map(|i| value(from + i as f64 * step) * if i % 2 == 1 { 4.0 } else { 2.0 }).sum();
+    let sum: f64 =
+        (1..2 * HALVES).map(|i| value(from + i as f64 * step) * if i % 2 == 1 { 4.0 } else { 2.0 }).sum();
     (sum + value(from) + value(to)) * step / 3.0
 }
 
@@ -109,10 +110,8 @@ fn airlight_on_gpu(cases: &[Case]) -> Vec<f32> {
         inputs: 7,
         outputs: 1,
     };
-    let values: Vec<f32> = cases
-        .iter()
-        .flat_map(|c| [c.away, c.theta, c.radius, c.extinction, c.g, c.from, c.to])
-        .collect();
+    let values: Vec<f32> =
+        cases.iter().flat_map(|c| [c.away, c.theta, c.radius, c.extinction, c.g, c.from, c.to]).collect();
     probe.run(&values)
 }
 
@@ -210,8 +209,15 @@ fn angles_and_distances_belong_together() {
             let away = random.magnitude(0.1, 100.0);
             let theta = random.between(0.05, 3.0);
             let at_light = random.between(0.0, 1.2 * (PI - theta)).min(PI);
-            [away, theta, away * random.magnitude(0.01, 10.0), at_light, away * random.magnitude(0.01, 10.0), 8.0 * away]
-                .map(|x| x as f32)
+            [
+                away,
+                theta,
+                away * random.magnitude(0.01, 10.0),
+                at_light,
+                away * random.magnitude(0.01, 10.0),
+                8.0 * away,
+            ]
+            .map(|x| x as f32)
         })
         .collect();
     let found = probe.run(records.as_flattened());
@@ -243,16 +249,23 @@ fn angles_and_distances_belong_together() {
         // Two angles of f32 that all but make a half turn: the distance is as good as what they lack to it.
         let open = (PI - theta - at_light).abs().max(1e-3);
         // WGSL allows atan2 an error of 4096 units in the last place; this adapter has 3e-6.
-        let budgets = [4e-6, 2e-6 * low / open + 1e-6 * away, 4e-6, 1e-5 * (away + along), 1e-4, 2e-4 * (away + along)];
+        let budgets =
+            [4e-6, 2e-6 * low / open + 1e-6 * away, 4e-6, 1e-5 * (away + along), 1e-4, 2e-4 * (away + along)];
         for k in 0..6 {
             errors[k] = errors[k].max((f64::from(found[k]) - expected[k]).abs() / budgets[k]);
         }
     }
     println!("{errors:?}");
-    for (name, error) in
-        ["light_angle", "distance_from_light_angle", "angle_from_light_ray", "path_through_air", "cosine_to_light", "equal_angle"]
-            .iter()
-            .zip(errors)
+    for (name, error) in [
+        "light_angle",
+        "distance_from_light_angle",
+        "angle_from_light_ray",
+        "path_through_air",
+        "cosine_to_light",
+        "equal_angle",
+    ]
+    .iter()
+    .zip(errors)
     {
         hold(&format!("{name}, in budgets"), error, 1.0);
     }
@@ -293,8 +306,14 @@ fn cones_are_cut_where_they_are() {
         };
         split += usize::from(last - first + 1 > inside.len());
         let (first, last) = (*first as f64 * step, *last as f64 * step);
-        assert!((0.0..1.01 * step).contains(&(first - low + 1e-6)), "{record:?}: {found:?} instead of {first}");
-        assert!((0.0..1.01 * step).contains(&(high - last + 1e-6)), "{record:?}: {found:?} instead of {last}");
+        assert!(
+            (0.0..1.01 * step).contains(&(first - low + 1e-6)),
+            "{record:?}: {found:?} instead of {first}"
+        );
+        assert!(
+            (0.0..1.01 * step).contains(&(high - last + 1e-6)),
+            "{record:?}: {found:?} instead of {last}"
+        );
     }
     println!("{empty} missed, {split} in two parts");
     assert!(empty > 300 && split > 100);

@@ -118,6 +118,24 @@ impl Library {
         Ok(library)
     }
 
+    /// The library with one more pass, `<system>/<name>`, that is not its own: it may import every module. It has
+    /// the one permutation `default`, without definitions, and takes the place of a pass of the same name.
+    #[must_use]
+    pub fn with_pass(mut self, system: &str, name: &str, source: &str) -> Self {
+        let pass = format!("{system}/{name}");
+        let paths: BTreeSet<String> = self.modules.iter().map(|module| module.path.clone()).collect();
+        let default = Permutation { name: "default".to_owned(), definitions: Default::default(), line: 0 };
+        self.passes.retain(|other| other.name != pass);
+        self.permutations.insert(pass.clone(), vec![default]);
+        self.passes.push(PassSource {
+            name: pass,
+            file: format!("{system}/passes/{name}.wgsl"),
+            source: source.to_owned(),
+            imports: used(source, &paths, ""),
+        });
+        self
+    }
+
     /// From text in memory: `(file, source)` of modules in order and of passes, and permutations.
     #[cfg(test)]
     pub(crate) fn from_text(

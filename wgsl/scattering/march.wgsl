@@ -34,12 +34,14 @@ fn march_row(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, optical_st
 
 /// Plain mean visibility of a view ray over `steps` equal steps along a row of a rectified map: one
 /// texture load a step and nothing else, the fastest march there is. `depth`: of the ray, 0..1;
-/// `texels`: that the ray covers, fractional, clamped to the width of the map.
-fn march_row_steps(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, steps: u32) -> f32 {
+/// `texels`: that the ray covers, fractional, clamped to the width of the map; `offset`: 0..1, where in
+/// each step the sample lies.
+fn march_row_steps(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, steps: u32, offset: f32) -> f32 {
     let width = f32(textureDimensions(map).x);
     let count = f32(max(steps, 1u));
     let stride = clamp(texels, 1e-3, width) / count;
-    var at = 0.5 * stride;
+    // The sum of strides is rounded at each step: the last sample stays inside the map.
+    var at = clamp(offset * stride, 0.0, max(width - 0.05 - stride * (count - 1.0), 0.0));
     var lit = 0u;
     for (var done = 0u; done < steps; done++) {
         lit += select(0u, 1u, textureLoad(map, vec2<u32>(u32(at), row), 0).x >= depth);

@@ -88,27 +88,41 @@ modules! {
     core::color [],
     core::fourier_basis [],
     core::phase [],
+    core::picture [],
     core::prefix_sum [],
+    core::jitter ["core::finite"],
+    core::ray_depth ["core::camera"],
+    core::resolve_depth [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
+    scattering::projective ["core::fourier_basis", "core::prefix_sum"],
     scattering::single_scatter ["core::phase", "core::prefix_sum"],
     scattering::local_light [
         "core::camera", "core::phase", "scattering::rectify", "scattering::single_scatter"
     ],
     scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
+    scattering::visibility_fourier ["core::fourier_basis"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
+    scattering::upsample [],
 }
 
 passes! {
     core/raster,
     core/scan,
     core/tonemap,
+    core/resolve_depth,
     scattering/slices,
     scattering/rectify,
+    scattering/rectify_projective,
+    scattering/project,
     scattering/filter,
     scattering/evaluate,
+    scattering/evaluate_projective,
+    scattering/evaluate_local,
     scattering/march,
     scattering/march_light,
+    scattering/reduce_depth,
+    scattering/upsample,
     scattering/composite,
 }
 

@@ -71,6 +71,7 @@ impl From<crate::scattering::SettingsError> for CommandError {
         use crate::scattering::SettingsError as E;
         let flag = match &error {
             E::Bases(_) | E::BasesPerThread(_) | E::Regions(_) => "--bases",
+            E::OrthographicStart => "--projection",
             E::LightForm(_) | E::LightAtEye { .. } => "--light",
             E::Size { what, .. } => match *what {
                 "a picture" => "--size",

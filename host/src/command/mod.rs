@@ -10,6 +10,7 @@ mod progress;
 mod run;
 mod scattering;
 
+pub use bench::baselines;
 pub use error::CommandError;
 
 use clap::{Parser, Subcommand};

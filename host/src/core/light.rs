@@ -304,7 +304,7 @@ mod tests {
             let axis = (target - position).normalize();
             let across = axis.any_orthonormal_vector();
             for turn in 0..12 {
-                let rim = Quat::from_axis_angle(axis, turn as f32 * 0.5236) * across;
+                let rim = Quat::from_axis_angle(axis, turn as f32 * 0.52) * across;
                 for (near, far) in [(0.06, 0.1), (0.1, 5.0), (5.0, 19.0)] {
                     let at = |distance: f32| {
                         let along = axis + rim * 30_f32.to_radians().tan();

@@ -2,15 +2,20 @@
 //! Cameras, lights and the passes that every system shares: the host's side of `wgsl/core`.
 
 mod camera;
+mod jitter;
 mod light;
 mod raster;
+mod resolve_depth;
 mod scan;
 mod shadow_views;
 mod tonemap;
 
 pub use camera::{Camera, CameraError, DepthRange, OrthographicView, PerspectiveView, View};
+pub use jitter::{Jitter, blue_noise_texture};
 pub use light::{DIRECTIONAL, Light, LightError, POINT, SPOT, direction_from_angles};
 pub use raster::{Drawing, MeshBuffers, Pictures, Raster, Sky};
+pub(crate) use raster::{MESH_VERTEX, begin};
+pub use resolve_depth::{ResolveDepth, ResolveDepthParameters, SampleChoice};
 pub use scan::Scan;
 pub use shadow_views::{Cascades, MAX_VIEWS, ShadowViews};
 pub use tonemap::{Tonemap, TonemapParameters};

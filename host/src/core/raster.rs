@@ -63,7 +63,7 @@ impl MeshBuffers {
     }
 
     /// Draws the mesh as the instance `instance`.
-    fn draw(&self, render: &mut wgpu::RenderPass<'_>, instance: u32) {
+    pub(crate) fn draw(&self, render: &mut wgpu::RenderPass<'_>, instance: u32) {
         render.set_vertex_buffer(0, self.vertices.raw.slice(..));
         render.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
         render.draw_indexed(0..self.count, 0, instance..instance + 1);
@@ -98,7 +98,8 @@ pub struct Raster {
     light_sampler: Sampler,
 }
 
-const VERTEX: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+/// Layout of the vertices of [`MeshBuffers`].
+pub(crate) const MESH_VERTEX: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 36,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3],
@@ -138,7 +139,7 @@ impl Raster {
             let stages = RenderStages {
                 vertex: "vertex_shadow",
                 fragment: None,
-                vertices: Some(VERTEX),
+                vertices: Some(MESH_VERTEX),
                 target: None,
                 depth: Some((wgpu::CompareFunction::Less, true)),
                 samples: 1,
@@ -175,7 +176,7 @@ impl Raster {
             Pass::render(gpu, &self.composed[variant.permutation], &stages)
         };
         let passes = Arc::new(PicturePasses {
-            surface: build("vertex_surface", "fragment_surface", Some(VERTEX), (nearer, true))?,
+            surface: build("vertex_surface", "fragment_surface", Some(MESH_VERTEX), (nearer, true))?,
             background: build(
                 "vertex_background",
                 "fragment_background",
@@ -332,8 +333,8 @@ pub struct Pictures {
     pub depth: Texture,
 }
 
-/// `color`: the target, and what it is resolved into.
-fn begin<'a>(
+/// A render pass that clears its targets, depth to `far_depth`. `color`: the target, and what it is resolved into.
+pub(crate) fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     color: Option<(&wgpu::TextureView, Option<&wgpu::TextureView>)>,
     depth: &wgpu::TextureView,

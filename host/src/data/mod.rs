@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Input data: meshes, light textures, their loaders and the generators of scenes.
+//! Input data: meshes, light textures, their loaders, and the generators of scenes and of noise.
 //!
 //! Everything is right-handed, y up and in metres; albedos are linear RGB in 0..1. Generators are
 //! deterministic: the same parameters give the same mesh.
 
+mod blue_noise;
 mod light_image;
 #[cfg(feature = "command")]
 mod load;
@@ -13,6 +14,7 @@ mod shapes;
 mod terrain;
 mod tree;
 
+pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
 #[cfg(feature = "command")]
 pub use light_image::load_light_image;
 pub use light_image::{LightImage, LightImageError};

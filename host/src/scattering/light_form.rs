@@ -125,7 +125,9 @@ mod tests {
         assert_eq!(point.layers(32), 8);
         assert_eq!(spot.layers(32), 9);
         assert_eq!(LightForm { texture: true, ..spot }.layers(32), 25);
-        assert!(spot.validate().is_ok() && point.validate().is_ok() && LightForm::default().validate().is_ok());
+        assert!(
+            spot.validate().is_ok() && point.validate().is_ok() && LightForm::default().validate().is_ok()
+        );
         assert!(LightForm { shadow_array: false, ..point }.validate().is_err());
         assert!(LightForm { texture: true, ..point }.validate().is_err());
         assert!(LightForm { spot: true, ..point }.validate().is_err());

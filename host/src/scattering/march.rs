@@ -2,8 +2,10 @@
 //! Light shafts by marching.
 
 use super::{
-    Inputs, LightForm, Rectification, ScatteringError, Weighting, check_size, light_resources, picture_pass,
+    Inputs, LightForm, ProjectiveMap, Rectification, ScatteringError, Weighting, check_size, light_resources,
+    picture_pass,
 };
+use crate::core::{Jitter, blue_noise_texture};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Buffer, Sampler, Texture};
@@ -19,10 +21,10 @@ pub struct MarchParameters {
     pub steps: u32,
     /// Where in each step the sample lies.
     pub offset: f32,
+    /// Number of the frame, for jitter.
+    pub frame: u32,
     /// Padding.
-    pub reserved_a: u32,
-    /// Padding.
-    pub reserved_b: u32,
+    pub reserved: u32,
 }
 
 /// What a march goes along.
@@ -36,6 +38,8 @@ pub enum Along<'a> {
         /// Steps a ray, at least 1.
         steps: u32,
     },
+    /// Rows of a projective map, the exact sum over its texels.
+    Projective(&'a ProjectiveMap),
     /// The standard shadow map, by equal steps.
     ShadowMap {
         /// Steps a ray, at least 1.
@@ -46,8 +50,10 @@ pub enum Along<'a> {
 /// Light shafts by marching: the baseline.
 pub struct March {
     pass: Pass,
+    settings: MarchParameters,
     parameters: Buffer,
     light_sampler: Sampler,
+    blue_noise: Option<Texture>,
     /// Radiance, and visibility in alpha.
     pub scattered: Texture,
 }
@@ -64,11 +70,28 @@ impl March {
         weighting: Weighting,
         viewport: [u32; 2],
     ) -> Result<Self, ScatteringError> {
+        Self::jittered(gpu, shaders, along, weighting, Jitter::None, viewport)
+    }
+
+    /// Like [`March::new`], with the samples of each pixel shifted by `jitter`. [`Along::Rows`] takes every
+    /// texel anyway and is not shifted.
+    ///
+    /// # Errors
+    /// [`ScatteringError`].
+    pub fn jittered(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        along: &Along<'_>,
+        weighting: Weighting,
+        jitter: Jitter,
+        viewport: [u32; 2],
+    ) -> Result<Self, ScatteringError> {
         check_size(gpu, "a picture", viewport)?;
         let mut definitions = Definitions::new();
         let mut steps = 0;
         match along {
             Along::Rows(_) => {}
+            Along::Projective(_) => definitions = definitions.flag("PROJECTIVE"),
             Along::RowSteps { steps: asked, .. } => {
                 definitions = definitions.flag("STEPS");
                 steps = *asked;
@@ -81,11 +104,21 @@ impl March {
         if weighting == Weighting::Average {
             definitions = definitions.flag("AVERAGE");
         }
-        let parameters = MarchParameters { steps, offset: 0.5, reserved_a: 0, reserved_b: 0 };
+        let jitter = if matches!(along, Along::Rows(_)) { Jitter::None } else { jitter };
+        if let Some(definition) = jitter.definition() {
+            definitions = definitions.flag(definition);
+        }
+        let blue_noise = match jitter {
+            Jitter::BlueNoise => Some(blue_noise_texture(gpu).map_err(PassError::from)?),
+            Jitter::None | Jitter::Gradient => None,
+        };
+        let settings = MarchParameters { steps, offset: 0.5, frame: 0, reserved: 0 };
         Ok(Self {
             pass: picture_pass(gpu, shaders, "scattering/march", &definitions, "fragment_march")?,
-            parameters: Buffer::uniform(gpu, &parameters),
+            settings,
+            parameters: Buffer::uniform(gpu, &settings),
             light_sampler: Sampler::linear(gpu),
+            blue_noise,
             scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
         })
     }
@@ -111,11 +144,13 @@ impl March {
         if weighting == Weighting::Average {
             definitions = definitions.flag("AVERAGE");
         }
-        let parameters = MarchParameters { steps, offset: 0.5, reserved_a: 0, reserved_b: 0 };
+        let settings = MarchParameters { steps, offset: 0.5, frame: 0, reserved: 0 };
         Ok(Self {
             pass: picture_pass(gpu, shaders, "scattering/march_light", &definitions, "fragment_march")?,
-            parameters: Buffer::uniform(gpu, &parameters),
+            settings,
+            parameters: Buffer::uniform(gpu, &settings),
             light_sampler: Sampler::linear(gpu),
+            blue_noise: None,
             scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
         })
     }
@@ -140,7 +175,22 @@ impl March {
                 ("rectified", (&map.rectified).into()),
             ]);
         }
+        if let Along::Projective(map) = along {
+            resources.extend([("rows", (&map.rows).into()), ("rectified", (&map.rectified).into())]);
+        }
+        if let Some(tile) = &self.blue_noise {
+            resources.push(("blue_noise", tile.into()));
+        }
         self.pass.bind_known(gpu, &resources)
+    }
+
+    /// Sets the number of the frame, by which jitter changes; 0 until then.
+    ///
+    /// # Errors
+    /// [`PassError`].
+    pub fn set_frame(&self, gpu: &Gpu, frame: u32) -> Result<(), PassError> {
+        self.parameters.write(gpu, &MarchParameters { frame, ..self.settings });
+        Ok(gpu.check()?)
     }
 
     /// Records the march of every pixel.

@@ -9,19 +9,32 @@ mod light_form;
 mod march;
 mod medium;
 mod prefiltered;
+mod projective;
+mod projective_map;
+mod projective_prefiltered;
 mod rectification;
+mod resolution;
 mod settings;
+mod upsample;
 
 pub use composite::Composite;
 pub use light_form::LightForm;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
 pub use prefiltered::{Prefiltered, PrefilteredBound};
+pub use projective::{
+    Choice, OBLIQUENESS_LIMIT, Projective, ProjectiveError, ProjectiveRows, ProjectiveSplit, choose,
+    projective_rows,
+};
+pub use projective_map::{ProjectiveMap, ProjectiveRaster, ProjectiveRasterBound};
+pub use projective_prefiltered::{ProjectivePrefiltered, ProjectivePrefilteredBound};
 pub use rectification::{Frame, Rectification};
+pub use resolution::{Reduced, Reduction, Resolution, TOLERANCE};
 pub use settings::{
     BasisFormat, Filtering, Reference, ScatteringError, Settings, SettingsError, Start, Weighting,
     check_size, epipole_near_picture,
 };
+pub use upsample::{Interpolated, Upsample};
 
 use crate::gpu::Gpu;
 use crate::pass::{Pass, PassError, Resource};
@@ -52,7 +65,10 @@ pub struct Inputs<'a> {
 }
 
 /// The resources that only some lights have, by name.
-pub(crate) fn light_resources<'a>(inputs: &Inputs<'a>, sampler: &'a Sampler) -> Vec<(&'static str, Resource<'a>)> {
+pub(crate) fn light_resources<'a>(
+    inputs: &Inputs<'a>,
+    sampler: &'a Sampler,
+) -> Vec<(&'static str, Resource<'a>)> {
     let mut resources = vec![("shadow_map", inputs.shadow_map.into()), ("light_sampler", sampler.into())];
     resources.extend(inputs.shadow_views.map(|views| ("shadow_views", views.into())));
     resources.extend(inputs.shadow_maps.map(|maps| ("shadow_maps", maps.into())));

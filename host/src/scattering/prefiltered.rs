@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light shafts by prefiltered bases (thesis 4.3).
 
-use super::{BasisFormat, Inputs, Rectification, ScatteringError, Settings, check_size, light_resources, picture_pass};
+use super::{Inputs, Rectification, ScatteringError, Settings, check_size, light_resources, picture_pass};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Sampler, Texture};
@@ -43,19 +43,21 @@ impl Prefiltered {
     ) -> Result<Self, ScatteringError> {
         settings.validate(gpu)?;
         check_size(gpu, "a picture", viewport)?;
-        let format = match settings.format {
-            BasisFormat::Rgba8Unorm => TextureFormat::Rgba8Unorm,
-            BasisFormat::Rgba16Float => TextureFormat::Rgba16Float,
-        };
+        let format = settings.format.texture_format();
         let [width, height] = settings.map;
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
         let filter = settings.filter_definitions();
         let evaluate = settings.evaluate_definitions();
+        let (pass, entry) = if settings.light.local() {
+            ("scattering/evaluate_local", "fragment_evaluate_local")
+        } else {
+            ("scattering/evaluate", "fragment_evaluate")
+        };
         Ok(Self {
             settings,
             rectification: Rectification::from_settings(gpu, shaders, &settings)?,
             filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
-            evaluate_pass: picture_pass(gpu, shaders, "scattering/evaluate", &evaluate, "fragment_evaluate")?,
+            evaluate_pass: picture_pass(gpu, shaders, pass, &evaluate, entry)?,
             sampler: Sampler::rows(gpu),
             light_sampler: Sampler::linear(gpu),
             bases: Texture::array(gpu, [width, height, settings.light.layers(settings.bases)], format, usage),

@@ -20,6 +20,9 @@ pub enum SettingsError {
     /// Regions of a row.
     #[error("{0} regions a row are impossible: the number must be from 1 to 8")]
     Regions(u32),
+    /// An orthographic camera, whose rays begin inside their rows.
+    #[error("an orthographic camera needs `Start::NearPlane` in the settings: its rays begin there")]
+    OrthographicStart,
     /// Size of the rectified map or the picture.
     #[error("{what} of {width}x{height} is impossible: both must lie between 1 and {limit} on this device")]
     Size {
@@ -36,7 +39,9 @@ pub enum SettingsError {
     #[error("this light is impossible: {0}")]
     LightForm(&'static str),
     /// The eye is at a spot or point light.
-    #[error("the eye is {distance} m from the light: at least {least} m are needed for rows around it; march instead")]
+    #[error(
+        "the eye is {distance} m from the light: at least {least} m are needed for rows around it; march instead"
+    )]
     LightAtEye {
         /// Metres between them; not finite where one of them is nowhere.
         distance: f32,
@@ -74,6 +79,15 @@ pub enum BasisFormat {
     Rgba8Unorm,
     /// 16 bits a basis.
     Rgba16Float,
+}
+
+impl BasisFormat {
+    pub(super) fn texture_format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+            Self::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        }
+    }
 }
 
 /// How the visibility along a ray is averaged.
@@ -239,6 +253,11 @@ impl Settings {
         ])
         .set("BASES", self.bases as i32);
         self.with_regions(self.light.color_definitions(self.light.shadow_definitions(definitions)))
+    }
+
+    /// Of the pass `evaluate_projective`, which knows no epipole.
+    pub(super) fn projective_definitions(&self) -> Definitions {
+        Self { epipole_march: false, depth_warp: false, ..*self }.evaluate_definitions()
     }
 
     fn with_regions(&self, definitions: Definitions) -> Definitions {

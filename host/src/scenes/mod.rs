@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The scenes of the gallery and the benchmarks: real meshes among generated trees and terrain.
 
+mod lights;
+mod parts;
+
 use crate::core::{Cascades, DepthRange, PerspectiveView, Sky, View, direction_from_angles};
 use crate::data::{
     Bounds, LightImage, Mesh, MeshError, TerrainParameters, TreeParameters, mesh_from_bytes, plane, terrain,
@@ -68,7 +71,8 @@ pub enum SceneError {
 }
 
 /// The names that [`scene`] knows.
-pub const SCENES: [&str; 4] = ["foliage", "terrain", "torus", "plane"];
+pub const SCENES: [&str; 9] =
+    ["foliage", "terrain", "torus", "plane", "spot", "lamp", "glass", "orthographic", "cascades"];
 
 /// A scene by name; none if there is no such scene.
 ///
@@ -80,6 +84,11 @@ pub fn scene(name: &str) -> Result<Option<Scene>, SceneError> {
         "terrain" => suzanne_on_terrain()?,
         "torus" => torus_scene()?,
         "plane" => plane_scene()?,
+        "spot" => lights::spot()?,
+        "lamp" => lights::lamp()?,
+        "glass" => lights::glass()?,
+        "orthographic" => lights::orthographic()?,
+        "cascades" => lights::cascades()?,
         _ => return Ok(None),
     }))
 }
@@ -210,4 +219,23 @@ pub fn framing(bounds: &Bounds, field_of_view: f32) -> PerspectiveView {
         (distance - radius).max(0.02 * radius) * 0.2,
         distance + 2.0 * radius,
     )
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::core::Camera;
+
+    #[test]
+    fn every_scene_can_be_drawn() {
+        for name in SCENES {
+            let scene = scene(name).unwrap().unwrap();
+            assert_eq!(scene.name, name);
+            assert_eq!(scene.mesh.validate(), Ok(()), "{name}");
+            assert!(Camera::new(&scene.view, [160, 90]).is_ok(), "{name}");
+            assert!(scene.light.fitted(&scene.mesh.bounds().unwrap()).is_ok(), "{name}");
+        }
+        assert!(scene("nope").unwrap().is_none());
+    }
 }

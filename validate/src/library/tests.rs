@@ -78,3 +78,28 @@ fn an_unlisted_pass_still_has_its_default() {
     assert_eq!(library.permutations("core/p").unwrap().len(), 1);
     assert_eq!(library.unlisted.len(), 1);
 }
+
+#[test]
+fn a_foreign_pass_is_composed_against_the_modules_of_the_library() {
+    let folder = folder(&[
+        ("core/a.wgsl", "#define_import_path airlight::core::a\nfn one() -> u32 { return 1u; }\n"),
+        ("core/passes/p.wgsl", "#import airlight::core::a\n"),
+        ("core/permutations", "p\n+ default:\n"),
+    ]);
+    let library = Library::from_directory(folder.path()).unwrap();
+    let source = "#import airlight::core::a::one\n\
+        @group(#{GROUP}) @binding(0) var<storage, read_write> out: array<u32>;\n\
+        @compute @workgroup_size(1)\nfn main() { out[0] = one(); }\n";
+    let library = library.with_pass("foreign", "p", source);
+    assert_eq!(library.pass("foreign/p").unwrap().imports, ["airlight::core::a"]);
+    assert_eq!(library.unlisted, []);
+    let definitions = library.permutation("foreign/p", "default").unwrap().definitions.clone();
+    let composed = library.compose("foreign/p", &definitions).unwrap();
+    assert_eq!(composed.reflect().entry_points[0].name, "main");
+
+    // A second one of the name takes its place, and an error in it is located in it.
+    let library = library.with_pass("foreign", "p", "#import airlight::core::b\n");
+    assert_eq!(library.passes().len(), 2);
+    let error = library.compose("foreign/p", &definitions).unwrap_err();
+    assert_eq!(error.location().unwrap().to_string(), "foreign/passes/p.wgsl:1:9");
+}

@@ -84,8 +84,8 @@ fn vertex_surface(
 fn shadow_clip(clip_from_world: mat4x4<f32>, width: f32, point: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
     var texel = 2.0 / (width * length(matrix_row(clip_from_world, 0u).xyz));
     if light.kind != DIRECTIONAL {
-        // The footprint grows with the distance from the light.
-        texel *= max(dot(matrix_row(clip_from_world, 3u), vec4<f32>(point, 1.0)), 0.0);
+        // The footprint grows with the distance from the light, and towards the corners of a wide view.
+        texel *= 1.5 * max(dot(matrix_row(clip_from_world, 3u), vec4<f32>(point, 1.0)), 0.0);
     }
     let towards = direction_to_light(light, point);
     return clip_from_world * vec4<f32>(point + normal * (1.5 * texel) + towards * texel, 1.0);

@@ -5,13 +5,10 @@
 // note: Around the light's place in the picture (and its antipode's) rays cover only a few texels and the light
 // note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
 // note: texels, very short rays included, blended in without a seam.
-// note: Around a spot or point light the mean of visibility times fall-off is taken out of the airlight integral, as the
-// note: mean visibility is in Eq. 4.2; the columns, linear in the angle at the light, hold the fall-off with distance.
 // definition BASES: number M of bases, as in the filter.
-// definition LOCAL: rows around a spot or point light. Not with REGIONS or NEAR_PLANE.
-// definition COLORS: 1 for the fall-off of a spot, 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
+// definition COLORS: 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
 // definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
-// definition PER_POINT: EPIPOLE_MARCH looks up every step by itself; needed with LOCAL, COLORS or SHADOW_ARRAY.
+// definition PER_POINT: EPIPOLE_MARCH looks up every step by itself; needed with COLORS or SHADOW_ARRAY.
 // definition SHADOW_ARRAY: EPIPOLE_MARCH goes through the shadow maps of several views.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
@@ -21,7 +18,7 @@
 // definition NEAR_PLANE: rays, and the medium, begin at the near plane instead of the eye.
 // definition DEPTH_WARP: as in rectify.
 // binding camera: the camera, perspective.
-// binding light: the light, directional without LOCAL, and its shadow map's clip space.
+// binding light: the directional light and its shadow map's clip space.
 // binding medium: the medium.
 // binding frame: the frame of the slices.
 // binding slices: their bounds, rgba32float, one texel a slice.
@@ -37,23 +34,19 @@
 
 #import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel}
 #import airlight::core::finite::finite_or
-#import airlight::core::fourier_basis::{
-    series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored
-}
 #import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
-#import airlight::core::phase::henyey_greenstein
+#import airlight::core::picture::picture_corner
 #import airlight::core::prefix_sum::prefix_weight
 #import airlight::core::shadow_views::{ShadowViews, view_position}
-#import airlight::scattering::local_light::{
-    distance_to_light, local_slice_from_texel, ray_bounds, light_angle, columns_covered, distance_from_light_angle,
-    local_ray, airlight, local_in_scattered, equal_angle, along_from_equal_angle, path_through_air, cosine_to_light
-}
 #import airlight::scattering::march::march_shadow_map
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin, prefix_column}
 #import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, lit_by_shadow}
+#import airlight::scattering::visibility_fourier::{
+    fourier_visibility, fourier_visibility_nearest, fourier_colors, fourier_colors_nearest
+}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -87,78 +80,40 @@ const ROW_REGIONS: u32 = u32(#{REGIONS});
 const ROW_REGIONS: u32 = 1u;
 #endif
 
+#ifdef LANCZOS
+const WINDOWED: bool = true;
+#else
+const WINDOWED: bool = false;
+#endif
+
 /// Rays that cover fewer texels are marched.
 const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
 #ifdef COLORS
-/// One vector of the filtered bases, or of their fall-off, as stored, at `column` of a ray's row, in texels.
-fn stored_at(ray: RowRay, column: f32, layer: u32) -> vec4<f32> {
-    let size = vec2<f32>(textureDimensions(bases).xy);
-#ifdef NEAREST
-    let place = vec2<f32>(column, f32(nearest_row(frame, ray.row)));
-    return textureLoad(bases, vec2<u32>(clamp(place, vec2<f32>(0.0), size - 1.0)), layer, 0);
-#else
-    return textureSampleLevel(bases, bases_sampler, vec2<f32>(column, ray.row + 0.5) / size, layer, 0.0);
-#endif
-}
-
 /// Mean of visibility times fall-off of a ray for each colour, read at `column` of its row, in texels.
 fn filtered_colors(ray: RowRay, column: f32) -> vec3<f32> {
-    let falloff = stored_at(ray, column, u32(#{COLORS}) * LAYERS).rgb;
-    var lit = 0.5 * falloff;
-    var series = series_first(ray.depth);
-#ifdef LANCZOS
-    var window = series_first(1.0 / f32(4u * LAYERS));
-#endif
-    for (var layer = 0u; layer < LAYERS; layer++) {
-#ifdef LANCZOS
-        let factors = coefficients_lanczos(series, window, layer, 4u * LAYERS);
-        window = series_next(window);
+    let size = vec2<f32>(textureDimensions(bases).xy);
+#ifdef NEAREST
+    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
+    return fourier_colors_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
 #else
-        let factors = coefficients(series, layer);
+    let place = vec2<f32>(column, ray.row + 0.5) / size;
+    return fourier_colors(bases, bases_sampler, place, ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
 #endif
-#ifdef LIGHT_TEXTURE
-        lit.x += dot(factors, basis_from_stored(stored_at(ray, column, layer)));
-        lit.y += dot(factors, basis_from_stored(stored_at(ray, column, LAYERS + layer)));
-        lit.z += dot(factors, basis_from_stored(stored_at(ray, column, 2u * LAYERS + layer)));
-#else
-        lit += dot(factors, basis_from_stored(stored_at(ray, column, layer)));
-#endif
-        series = series_next(series);
-    }
-    return clamp(lit, vec3<f32>(0.0), falloff);
 }
 #else
 /// The filtered series of a ray, read at `column` of its row, in texels.
 fn filtered_series(ray: RowRay, column: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(bases).xy);
 #ifdef NEAREST
-    let place = vec2<u32>(clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0));
+    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
+    return fourier_visibility_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, WINDOWED);
 #else
     let place = vec2<f32>(column, ray.row + 0.5) / size;
+    return fourier_visibility(bases, bases_sampler, place, ray.depth, LAYERS, WINDOWED);
 #endif
-    var series = series_first(ray.depth);
-#ifdef LANCZOS
-    var window = series_first(1.0 / f32(4u * LAYERS));
-#endif
-    var visibility = 0.5;
-    for (var layer = 0u; layer < LAYERS; layer++) {
-#ifdef NEAREST
-        let filtered = basis_from_stored(textureLoad(bases, place, layer, 0));
-#else
-        let filtered = basis_from_stored(textureSampleLevel(bases, bases_sampler, place, layer, 0.0));
-#endif
-#ifdef LANCZOS
-        visibility += dot(coefficients_lanczos(series, window, layer, 4u * LAYERS), filtered);
-        window = series_next(window);
-#else
-        visibility += dot(coefficients(series, layer), filtered);
-#endif
-        series = series_next(series);
-    }
-    return visibility;
 }
 #endif
 
@@ -210,31 +165,6 @@ fn lit_at(point: vec3<f32>) -> vec3<f32> {
 #endif
 }
 
-#ifdef LOCAL
-/// Mean of `lit_at` over a view ray between two distances in metres, by steps of equal angle at the light; weighted by phase
-/// function and transmittance, unless `extinction` is zero. `cosine`, `sine`: of the ray's angle to the light.
-fn marched_light(
-    origin: vec3<f32>, direction: vec3<f32>, away: f32, cosine: f32, sine: f32, span: vec2<f32>, extinction: f32,
-    steps: u32, offset: f32
-) -> vec3<f32> {
-    let ray = local_ray(away, cosine, sine, light.radius);
-    let from_angle = equal_angle(ray, span.x);
-    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(steps, 1u));
-    // Weights in units of the first step's: finite however deep the stretch lies.
-    let first = path_through_air(ray, along_from_equal_angle(ray, from_angle + stride * offset));
-    var sum = vec3<f32>(0.0);
-    var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
-        let along = along_from_equal_angle(ray, from_angle + stride * (f32(done) + offset));
-        let phase = henyey_greenstein(cosine_to_light(ray, along), medium.g);
-        let air = exp(-clamp(extinction * (path_through_air(ray, along) - first), 0.0, 80.0));
-        let weight = select(1.0, phase * air, extinction > 0.0);
-        sum += weight * lit_at(origin + along * direction);
-        total += weight;
-    }
-    return sum / max(total, 1e-30);
-}
-#else
 /// Mean of `lit_at` over a view ray between two distances in metres, by equal steps, weighted by transmittance.
 fn marched_light(
     origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
@@ -251,53 +181,8 @@ fn marched_light(
     return sum / max(total, 1.0);
 }
 #endif
-#endif
 
 /// Radiance, and mean visibility in alpha, of a pixel.
-#ifdef LOCAL
-fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
-    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
-    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
-    let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
-    let slice = local_slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
-    let width = f32(textureDimensions(bases).x);
-    let away = distance_to_light(frame, light.position);
-    let texels = width * columns_covered(slice, light_angle(away, ray.cosine, ray.sine, ray.distance));
-    var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(ray_bounds(slice), ray));
-#ifdef DEPTH_WARP
-    row_ray.depth = warped_depth(row_ray.depth);
-#endif
-#ifdef COLORS
-    var lit = filtered_colors(row_ray, prefix_column(texels, 0.0));
-#else
-    var lit = vec3<f32>(clamp(filtered_series(row_ray, prefix_column(texels, 0.0)), 0.0, 1.0));
-#endif
-    // The stretch of the ray between the least and the greatest light angle of the slice.
-    let span = vec2<f32>(
-        distance_from_light_angle(away, ray.angle, slice.light_angle_min, ray.distance),
-        distance_from_light_angle(away, ray.angle, slice.light_angle_max, ray.distance)
-    );
-#ifdef EPIPOLE_MARCH
-#ifdef AVERAGE
-    let extinction = 0.0;
-#else
-    let extinction = medium.extinction;
-#endif
-    let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
-    // A ray that ends before it comes into the light has nothing to march.
-    let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0 && span.y > span.x);
-    let marched = marched_light(
-        camera.eye, perspective_ray(camera, ndc).direction, away, ray.cosine, ray.sine, span, extinction, steps, 0.5
-    );
-    lit = mix(lit, marched, near_epipole);
-#endif
-    let integral = airlight(
-        local_ray(away, ray.cosine, ray.sine, light.radius), medium.extinction, medium.g, span.x, span.y
-    );
-    let radiance = local_in_scattered(medium, light.radiance, integral, lit);
-    return vec4<f32>(min(radiance, vec3<f32>(65504.0)), dot(lit, vec3<f32>(1.0 / 3.0)));
-}
-#else
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
@@ -362,7 +247,6 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
 #endif
 }
-#endif
 
 @compute @workgroup_size(16, 8)
 fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -371,10 +255,9 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-/// One triangle over the whole picture.
 @vertex
 fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+    return picture_corner(index);
 }
 
 @fragment

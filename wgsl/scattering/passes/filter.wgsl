@@ -13,11 +13,13 @@
 // definition DIRECT: sines and cosines of every basis instead of the recurrence by rotation.
 // definition AVERAGE: plain means (average visibility) instead of means weighted by transmittance.
 // definition LOCAL: rows around a spot or point light. Not with REGIONS, unless with AVERAGE.
+// definition PROJECTIVE: projective rows, whose texels differ in length, instead of epipolar slices. Not with LOCAL or COLORS.
 // definition COLORS: 1 for the fall-off of a spot, 3 with LIGHT_TEXTURE; that many times M bases, and one layer more.
 // definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
 // definition RGBA16FLOAT: store as rgba16float instead of rgba8unorm.
 // binding medium: the medium; absent with AVERAGE.
-// binding slices: bounds of the slices, rgba32float; absent with AVERAGE, unless with COLORS.
+// binding slices: bounds of the slices, rgba32float; absent with PROJECTIVE, and with AVERAGE unless with COLORS.
+// binding rows: the projective rows; with PROJECTIVE only.
 // binding rectified: the rectified map, depth 0..1.
 // binding bases: out, M/4 layers of the filtered bases; -1..1 is stored as 0..1. With COLORS the layers of each colour, and a layer of the mean fall-off, 0..1.
 // binding light: the light; with LOCAL or COLORS only.
@@ -32,15 +34,22 @@
 #import airlight::scattering::local_light::{
     local_slice_from_texel, light_angle_of_column, light_ray_direction, column_weight, distance_to_light
 }
+#import airlight::scattering::projective::{
+    ProjectiveRows, reference_reach, texel_begin, texel_end, stretch_weight
+}
 #import airlight::scattering::rectify::{Frame, slice_from_texel, row_azimuth, azimuth_direction}
 #import airlight::scattering::rows::region_begin
 #import airlight::scattering::single_scatter::Medium
 
-#ifndef AVERAGE
-@group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
+#ifdef PROJECTIVE
+@group(#{GROUP}) @binding(8) var<uniform> rows: ProjectiveRows;
+#else ifndef AVERAGE
 @group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
 #else ifdef COLORS
 @group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
+#endif
+#ifndef AVERAGE
+@group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
 #endif
 #ifdef COLORS
 @group(#{GROUP}) @binding(4) var<uniform> light: Light;
@@ -100,7 +109,19 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     if row >= min(size.y, textureDimensions(bases).y) || first >= LAYERS || id.z >= ROW_REGIONS {
         return;
     }
+    let begin = region_begin(id.z, size.x, ROW_REGIONS);
+#ifdef PROJECTIVE
 #ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
+    let reach = reference_reach(rows, f32(size.y), f32(row));
+    // Transmittance from the start of the region.
+    var through = 1.0;
+    var edge = texel_begin(rows, f32(size.x), begin);
+    var weights = RowWeights(0.0, 0.0, 1.0);
+#else ifdef AVERAGE
     var weights = row_weights(0.0);
 #else ifdef LOCAL
     let slice = local_slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
@@ -115,7 +136,15 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     var mean_falloff = vec4<f32>(0.0);
 #endif
     let end = region_begin(id.z + 1u, size.x, ROW_REGIONS);
-    for (var column = region_begin(id.z, size.x, ROW_REGIONS); column < end; column++) {
+    for (var column = begin; column < end; column++) {
+#ifdef PROJECTIVE
+        let next = texel_end(rows, f32(size.x), column);
+        let metres = (next - edge) * reach;
+        weights.weight = through * stretch_weight(extinction, metres);
+        weights.total += weights.weight;
+        through *= exp(-extinction * metres);
+        edge = next;
+#endif
         let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
         let blocker = min(depth + surface_bias(4u * LAYERS), 1.0);
 #ifdef LOCAL
@@ -155,7 +184,8 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
             series = series_next(series);
 #endif
         }
-#ifdef AVERAGE
+#ifdef PROJECTIVE
+#else ifdef AVERAGE
         weights = row_weights_next(weights);
 #else ifndef LOCAL
         weights = row_weights_next(weights);

@@ -22,6 +22,7 @@
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
 #import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
+#import airlight::core::picture::picture_corner
 #import airlight::core::phase::henyey_greenstein
 #import airlight::core::shadow_views::{ShadowViews, view_position}
 #import airlight::scattering::local_light::{
@@ -36,8 +37,9 @@ struct MarchParameters {
     steps: u32,
     /// Where in each step the sample lies, 0..1.
     offset: f32,
-    reserved_a: u32,
-    reserved_b: u32,
+    /// Unused here.
+    frame: u32,
+    reserved: u32,
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -152,10 +154,9 @@ fn march_light(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-/// One triangle over the whole picture.
 @vertex
 fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+    return picture_corner(index);
 }
 
 @fragment

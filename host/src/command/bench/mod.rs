@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `airlight bench`: ratios against baselines, interleaved in one run, with the error of both sides.
 
+pub mod baselines;
+mod resolution;
 mod scattering;
 mod tables;
 
@@ -44,7 +46,7 @@ pub struct Row {
     pub name: String,
     /// Its value: the median of the samples.
     pub value: f64,
-    /// `ratio`, `ms`, `MB` or `fraction`.
+    /// `ratio`, `ms`, `MB`, `steps` or `fraction`.
     pub unit: &'static str,
     /// Which way is better.
     pub better: &'static str,

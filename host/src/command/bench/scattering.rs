@@ -13,7 +13,8 @@ use airlight_tests::linear::{Mat4, Vec3};
 use airlight_tests::reference::camera::Camera;
 use airlight_tests::reference::scattering as reference;
 
-const SYSTEM: &str = "scattering";
+/// Name of the system in its rows.
+pub const SYSTEM: &str = "scattering";
 /// Size of the picture of the named ratios.
 pub const SIZE: [u32; 2] = [1920, 1080];
 /// Size of the standard shadow map.
@@ -46,24 +47,36 @@ pub struct Truth {
 impl Truth {
     /// Evaluates the picture.
     pub fn new(gpu: &Gpu, stage: &Stage, map: &Texture) -> Result<Self, CommandError> {
-        let camera = Camera::from_matrix(
-            Mat4::from(stage.camera.clip_from_world.to_cols_array()),
-            f64::from(stage.camera.far_depth),
-        )
-        .ok_or_else(|| CommandError::failure("the camera's matrix has no inverse"))?;
+        Self::over(gpu, stage, &stage.camera, map, STRIDE)
+    }
+
+    /// Evaluates every `stride`-th pixel in x and y over a map that was rectified for `rectified`.
+    pub fn over(
+        gpu: &Gpu,
+        stage: &Stage,
+        rectified: &crate::core::Camera,
+        map: &Texture,
+        stride: usize,
+    ) -> Result<Self, CommandError> {
+        let camera = |camera: &crate::core::Camera| {
+            let matrix = Mat4::from(camera.clip_from_world.to_cols_array());
+            Camera::from_matrix(matrix, f64::from(camera.far_depth))
+                .ok_or_else(|| CommandError::failure("the camera's matrix has no inverse"))
+        };
+        let (camera, rectified) = (camera(&stage.camera)?, camera(rectified)?);
         let size = [stage.camera.viewport.x as u32, stage.camera.viewport.y as u32];
         let depth = stage.pictures.depth.read(gpu).map_err(CommandError::failure)?;
         let values = map.read(gpu).map_err(CommandError::failure)?;
         let [width, height, _] = map.size();
         let scene = scene(stage, &camera, &depth, size);
         let rectification = reference::Rectification::new(
-            &camera,
+            &rectified,
             scene.light.direction,
             scene.medium.distance_limit,
             width as usize,
             height as usize,
         );
-        let rectified = reference::picture(&scene, &rectification, &values, STRIDE);
+        let rectified = reference::picture(&scene, &rectification, &values, stride);
         Ok(Self { camera, depth, size, rectified })
     }
 
@@ -79,7 +92,7 @@ impl Truth {
             far_depth: f64::from(stage.light.far_depth),
         };
         let scene = scene(stage, &self.camera, &self.depth, self.size);
-        Ok(reference::shadow_map_picture(&scene, &map, STRIDE))
+        Ok(reference::shadow_map_picture(&scene, &map, self.rectified.stride))
     }
 
     /// Visibility (alpha) of a picture of the GPU at the sampled pixels.
@@ -122,7 +135,7 @@ pub fn run(gpu: &Gpu, record: Work<'_>) -> Result<(), CommandError> {
 
 /// Every named figure.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {
-    let bar = progress::bar(7, quiet);
+    let bar = progress::bar(8, quiet);
     let mut rows = Vec::new();
     bar.set_message("march over prefiltered, foliage 1920x1080");
     rows.extend(march_over_prefiltered(gpu, shaders)?);
@@ -137,13 +150,18 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
         rows.extend(weighted_radiance(gpu, shaders, name)?);
         bar.inc(1);
     }
+    bar.set_message("reduced resolution and equal error, foliage 1920x1080");
+    rows.extend(super::resolution::rows(gpu, shaders)?);
+    bar.inc(1);
     bar.set_message("evaluation of torus against tree");
     rows.push(scene_independence(gpu, shaders)?);
     bar.finish_and_clear();
+    rows.extend(super::baselines::rows(gpu, shaders, quiet)?);
     Ok(rows)
 }
 
-const VISIBILITY: &str = "mean absolute error of visibility";
+/// What errors of visibility are.
+pub const VISIBILITY: &str = "mean absolute error of visibility";
 
 /// Cost of marching over that of everything that prefiltering does, rectification counted in.
 fn march_over_prefiltered(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: In-scattered radiance of every pixel from filtered bases over projective rows, for cameras of any kind.
+// source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
+// note: Texel i holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
+// note: An orthographic camera needs NEAR_PLANE: its rays do not begin at the start of their rows.
+// definition BASES: number M of bases, as in the filter.
+// definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
+// definition AVERAGE: the bases are plain means.
+// definition NEAREST: the nearest texel of the bases instead of a bilinear blend; no sampler.
+// definition REGIONS: regions that the rows were filtered in, as in the filter; more than one costs more reads a pixel.
+// definition NEAR_PLANE: rays, and the medium, begin at the near plane instead of the eye.
+// binding camera: the camera, any.
+// binding light: the directional light and its shadow map's clip space.
+// binding medium: the medium.
+// binding rows: the projective rows.
+// binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
+// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
+// binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
+
+#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
+#import airlight::core::finite::finite_or
+#import airlight::core::light::Light
+#import airlight::core::picture::picture_corner
+#import airlight::scattering::projective::{
+    ProjectiveRows, ProjectiveRay, projective_ray, reference_reach, column_from_x, x_from_column, texel_begin,
+    filtered_column, stretch_weight
+}
+#import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin}
+#import airlight::scattering::visibility_fourier::{fourier_visibility, fourier_visibility_nearest}
+#import airlight::scattering::single_scatter::{Medium, in_scattered}
+
+@group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
+@group(#{GROUP}) @binding(1) var<uniform> light: Light;
+@group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
+@group(#{GROUP}) @binding(10) var<uniform> rows: ProjectiveRows;
+@group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
+@group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
+#ifndef NEAREST
+@group(#{GROUP}) @binding(8) var bases_sampler: sampler;
+#endif
+@group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
+
+const LAYERS: u32 = u32(#{BASES}) / 4u;
+#ifdef REGIONS
+const ROW_REGIONS: u32 = u32(#{REGIONS});
+#else
+const ROW_REGIONS: u32 = 1u;
+#endif
+
+#ifdef LANCZOS
+const WINDOWED: bool = true;
+#else
+const WINDOWED: bool = false;
+#endif
+
+/// The filtered series of a ray, read at `column` of its row, in texels.
+fn filtered_series(ray: RowRay, column: f32) -> f32 {
+    let size = vec2<f32>(textureDimensions(bases).xy);
+#ifdef NEAREST
+    let place = clamp(vec2<f32>(column, floor(ray.row + 0.5)), vec2<f32>(0.0), size - 1.0);
+    return fourier_visibility_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, WINDOWED);
+#else
+    let place = vec2<f32>(column, ray.row + 0.5) / size;
+    return fourier_visibility(bases, bases_sampler, place, ray.depth, LAYERS, WINDOWED);
+#endif
+}
+
+/// Mean visibility of a view ray between its ends. `row_ray`: the same in columns; `extinction` in 1/m, 0 for plain means.
+fn projective_visibility(along: ProjectiveRay, row_ray: RowRay, extinction: f32) -> f32 {
+    let size = textureDimensions(bases);
+    let width = f32(size.x);
+    let reach = reference_reach(rows, f32(size.y), row_ray.row);
+    let first = region_of(row_ray.begin, size.x, ROW_REGIONS);
+    let last = max(region_of(row_ray.end, size.x, ROW_REGIONS), first);
+    var sum = 0.0;
+    var total = 0.0;
+    for (var region = first; region <= last; region++) {
+        let column = region_begin(region, size.x, ROW_REGIONS);
+        let start = texel_begin(rows, width, column);
+        let from_x = max(along.begin, start);
+        var to_x = max(along.end, from_x);
+        if region < last {
+            to_x = max(texel_begin(rows, width, region_begin(region + 1u, size.x, ROW_REGIONS)), from_x);
+        }
+        var mean = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, to_x));
+#ifdef NEAR_PLANE
+        if from_x > start {
+            let whole = stretch_weight(extinction, (to_x - start) * reach);
+            let before = stretch_weight(extinction, (from_x - start) * reach);
+            let skipped = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, from_x));
+            mean = clamp((mean * whole - skipped * before) / max(whole - before, 1e-6 * whole + 1e-30), 0.0, 1.0);
+        }
+#endif
+        let begins = (from_x - along.begin) * along.reach;
+        let weight = exp(-extinction * begins) * stretch_weight(extinction, (to_x - from_x) * along.reach);
+        sum += mean * weight;
+        total += weight;
+    }
+    // A ray of no length has no mean and scatters nothing.
+    return select(0.0, sum / max(total, 1e-37), total > 1e-30);
+}
+
+/// Radiance, and mean visibility in alpha, of a pixel.
+fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
+    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
+    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+#ifdef AVERAGE
+    let extinction = 0.0;
+#else
+    let extinction = medium.extinction;
+#endif
+    let width = f32(textureDimensions(bases).x);
+    let ray = view_ray(camera, ndc);
+    let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
+    let cosine = dot(ray.direction, light.direction);
+    var along = projective_ray(rows, f32(textureDimensions(bases).y), ray.origin, ray.direction, distance);
+#ifdef NEAR_PLANE
+    // An orthographic ray begins there anyway.
+    let near = distance_from_depth(camera, ray, ndc, camera.near_depth, distance);
+    along.begin += near / along.reach;
+#else
+    let near = 0.0;
+#endif
+    var row_ray = RowRay(
+        along.row, column_from_x(rows, width, along.begin), column_from_x(rows, width, along.end), along.depth
+    );
+#ifdef NEAR_PLANE
+    // Short stretches are widened towards the eye, as those of slices are.
+    let widened = stretch_begin(row_ray.begin, row_ray.end);
+    if widened < row_ray.begin {
+        row_ray.begin = widened;
+        along.begin = min(along.begin, x_from_column(rows, width, widened));
+    }
+#endif
+    let visibility = clamp(projective_visibility(along, row_ray, extinction), 0.0, 1.0);
+    let radiance = in_scattered(medium, light.radiance, cosine, distance - near, visibility);
+    return vec4<f32>(min(radiance, vec3<f32>(65504.0)), visibility);
+}
+
+@compute @workgroup_size(16, 8)
+fn evaluate_projective(@builtin(global_invocation_id) id: vec3<u32>) {
+    if all(id.xy < textureDimensions(scattered)) {
+        textureStore(scattered, id.xy, pixel_light(id.xy));
+    }
+}
+
+@vertex
+fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return picture_corner(index);
+}
+
+@fragment
+fn fragment_evaluate_projective(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return pixel_light(vec2<u32>(position.xy));
+}
