@@ -62,7 +62,7 @@ struct Pixel {
 impl Case {
     fn new(name: &str, map: [u32; 2]) -> Self {
         let scene = scenes::scene(name).unwrap().unwrap();
-        let Setting { view, .. } = scene.setting();
+        let view = scene.setting().view.perspective().unwrap();
         let stage = Stage::new(gpu(), gpu::raster(), &scene.setting(), PICTURE, [1024, 1024]).unwrap();
         let map = Rectification::new(gpu(), shaders(), map).unwrap();
         let bound = map.bind(gpu(), &stage.inputs()).unwrap();

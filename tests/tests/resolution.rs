@@ -126,7 +126,7 @@ struct Case {
 impl Case {
     fn new(name: &str, size: [u32; 2]) -> Self {
         let scene = scenes::scene(name).unwrap().unwrap();
-        let Setting { view, .. } = scene.setting();
+        let view = scene.setting().view.perspective().unwrap();
         let stage = Stage::new(gpu(), gpu::raster(), &scene.setting(), size, [1024, 1024]).unwrap();
         let map = rectified(&stage.inputs());
         Self { stage, map, view, size }
@@ -321,6 +321,9 @@ impl Bench {
             medium: &self.medium,
             depth,
             shadow_map: &self.shadow_map,
+            shadow_maps: None,
+            shadow_views: None,
+            light_texture: None,
         }
     }
 
