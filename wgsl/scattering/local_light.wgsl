@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::scattering::local_light
 // summary: Epipolar rows around a light at a point, spot or point light, and the light that air scatters along a view ray.
-// source: thesis 4.3.2 ("other light sources") and 4.4.1; W. Pegoraro and S. Parker, "An analytical solution to single
-// source: scattering in homogeneous participating media" (2009); C. Kulla and M. Fajardo (2012) for equal angles.
+// source: thesis 4.3.2 ("other light sources") and 4.4.1; W. Pegoraro and S. Parker, "An analytical solution to single scattering in homogeneous participating media" (2009); C. Kulla and M. Fajardo (2012) for equal angles.
 // note: `theta` is the angle at the eye, from the direction to the light; the light angle `alpha` is the angle at the
 // note: light, from the direction to the eye. On a view ray theta is constant and alpha grows; on a light ray alpha is
 // note: constant and theta grows away from the light: lit if and only if theta_ray <= theta_stored.
