@@ -10,7 +10,7 @@ mod gpu;
 
 use airlight::command::baselines::{Baseline, Competitor};
 use airlight::scattering::{Along, March, Prefiltered, Rectification, Settings, Weighting};
-use airlight::{Setting, Shaders, Stage, scenes};
+use airlight::{Shaders, Stage, scenes};
 use airlight_tests::baselines::{PASSES, SYSTEM, variance};
 use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;

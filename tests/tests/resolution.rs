@@ -14,7 +14,7 @@ use airlight::scattering::{
     TOLERANCE, Upsample, Weighting,
 };
 use airlight::validate::Definitions;
-use airlight::{Buffer, Pass, Setting, Stage, Texture, scenes};
+use airlight::{Buffer, Pass, Stage, Texture, scenes};
 use airlight_tests::error;
 use airlight_tests::linear;
 use airlight_tests::reference::camera::Camera as ReferenceCamera;
