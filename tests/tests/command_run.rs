@@ -350,7 +350,7 @@ fn a_struct_that_one_pass_writes_is_the_uniform_of_the_next() {
         ],
     );
     let (shape, frame) = npy::read_f32(&folder.join("frame.npy"));
-    assert_eq!(shape, [16]);
+    assert_eq!(shape, [32]);
     // light, towards it; the number of rows is where the layout says.
     assert_eq!(frame[..3], [0.0, 1.0, 0.0]);
     assert_eq!(frame[11], 8.0);
@@ -610,7 +610,7 @@ fn names_that_are_not_there_are_told_with_those_that_are() {
     bad(&tonemap(&["--define", "NOPE=1"]), &["--define", "`NOPE`", "none"]);
     bad(
         &["run", "scattering/filter", "--define", "BASE=8"],
-        &["--define", "`BASE`", "BASES, BASES_PER_THREAD, RGBA16FLOAT"],
+        &["--define", "`BASE`", "BASES, BASES_PER_THREAD, COLORS"],
     );
     bad(
         &["run", "core/scan", "--dispatch", "1"],
