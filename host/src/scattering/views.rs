@@ -62,13 +62,13 @@ pub struct ViewSettings {
 /// The passes and textures of one method.
 pub enum ViewPasses {
     /// See [`Method::Epipolar`].
-    Epipolar(Prefiltered),
+    Epipolar(Box<Prefiltered>),
     /// See [`Method::Projective`].
-    Projective(ProjectivePrefiltered),
+    Projective(Box<ProjectivePrefiltered>),
     /// See [`Method::March`].
     March {
         /// The march.
-        march: March,
+        march: Box<March>,
         /// Steps a ray.
         steps: u32,
     },
@@ -89,13 +89,13 @@ impl ViewPasses {
     ) -> Result<Self, ScatteringError> {
         Ok(match method {
             Method::Epipolar(settings) => {
-                Self::Epipolar(Prefiltered::new(gpu, shaders, *settings, viewport)?)
+                Self::Epipolar(Box::new(Prefiltered::new(gpu, shaders, *settings, viewport)?))
             }
             Method::Projective(settings, projective) => {
                 let map = ProjectiveMap::resampled(gpu, shaders, settings.map)?;
                 let made = ProjectivePrefiltered::new(gpu, shaders, map, *settings, viewport)?;
                 made.write(gpu, projective)?;
-                Self::Projective(made)
+                Self::Projective(Box::new(made))
             }
             Method::March { form, steps, weighting, jitter, frame } => {
                 let march = if form.plain() {
@@ -110,7 +110,7 @@ impl ViewPasses {
                     .into());
                 };
                 march.set_frame(gpu, *frame)?;
-                Self::March { march, steps: *steps }
+                Self::March { march: Box::new(march), steps: *steps }
             }
         })
     }
