@@ -69,7 +69,10 @@ impl Run {
         let (out, buffers) = (out.to_str().unwrap(), buffers.to_str().unwrap());
         let own = "--size 96x64 --map 128x128 --shadow-map 256x256 --extinction 0.08 --g 0.3";
         let mut arguments = vec!["scattering", "--mesh", mesh, "--out", out, "--buffers", buffers];
-        arguments.extend(own.split(' ').chain(flags.split(' ').filter(|flag| !flag.is_empty())));
+        let flags_of_own: Vec<&str> = own.split(' ').collect();
+        let given: Vec<&str> = flags.split(' ').filter(|flag| !flag.is_empty()).collect();
+        let kept = flags_of_own.chunks(2).filter(|pair| !given.contains(&pair[0]));
+        arguments.extend(kept.flatten().chain(&given));
         let said = succeeds(at, &arguments).out;
         let arrays = files(Path::new(buffers)).into_keys();
         let name = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
@@ -138,7 +141,10 @@ fn rows_of_a_directional_light_agree_with_the_march() {
     let at = scene();
     let at = at.path();
     agrees(at, SUN, "", "projective (", 0.03);
-    agrees(at, SUN, "--rectification projective --splits 1", "projective (as asked for)", 0.06);
+    agrees(at, SUN, "--rectification projective --splits 4", "projective (as asked for)", 0.03);
+    let rows = &Run::new(at, "hall.obj", &format!("{SUN} --splits 4")).buffers["rows"];
+    // The words of the uniform; the number of splits is an integer.
+    assert_eq!((rows.0[0], rows.1[22].to_bits()), (24, 4));
     agrees(at, SUN, "--rectification epipolar", "epipolar (as asked for)", 0.03);
     agrees(at, SUN, "--reference bisectrix --regions 3", "epipolar (--reference", 0.03);
     let ahead = format!("{EYE} --light directional:185,12");
@@ -187,7 +193,7 @@ fn orthographic_cameras_are_rectified_or_marched() {
             let texels = values.chunks_exact(if shape.len() == 3 { 4 } else { 1 });
             texels.filter(|texel| range.contains(&texel[channel])).count()
         });
-    assert!(lit > 3000 && seen > 1000, "{lit} pixels are lit, {seen} see the mesh");
+    assert!(lit > 3000 && seen > 200, "{lit} pixels are lit, {seen} see the mesh");
 }
 
 /// Where rows do not exist the picture is the march's.
@@ -216,10 +222,10 @@ fn spots_and_point_lights_agree_with_the_march() {
 fn light_textures_and_cascades_agree_with_the_march() {
     let at = scene();
     let at = at.path();
-    agrees(at, &format!("{SUN} --light-texture glass.png"), "", "epipolar (a light texture", 0.08);
+    agrees(at, &format!("{SUN} --light-texture glass.png"), "", "epipolar (a light texture", 0.04);
     agrees(at, &format!("{SPOT} --light-texture glass.png"), "", "epipolar (", 0.1);
     agrees(at, &format!("{SUN} --cascades 3"), "--regions 2", "epipolar (cascades", 0.03);
-    agrees(at, &format!("{SUN} --cascades 2 --light-texture glass.png"), "", "epipolar (", 0.08);
+    agrees(at, &format!("{SUN} --cascades 2 --light-texture glass.png"), "", "epipolar (", 0.04);
     let glass = Run::new(at, "hall.obj", &format!("{SUN} --light-texture glass.png --method march"));
     let white = Run::new(at, "hall.obj", &format!("{SUN} --method march"));
     let changed = relative_rmse(&glass.radiance("scattered"), &white.radiance("scattered"));
