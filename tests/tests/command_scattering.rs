@@ -148,7 +148,9 @@ fn rows_of_a_directional_light_agree_with_the_march() {
     agrees(at, SUN, "--rectification epipolar", "epipolar (as asked for)", 0.03);
     agrees(at, SUN, "--reference bisectrix --regions 3", "epipolar (--reference", 0.03);
     let ahead = format!("{EYE} --light directional:185,12");
-    agrees(at, &ahead, "--half --bases 64", "epipolar (the light is in the picture", 0.04);
+    // Rows around a light in the picture hold rays of all angles, which share their weights; plain means are exact.
+    agrees(at, &ahead, "--half --bases 64", "epipolar (the light is in the picture", 0.06);
+    agrees(at, &format!("{ahead} --average"), "--half --bases 64", "epipolar (the light is in", 0.03);
     agrees(at, &format!("{SUN} --average"), "--regions 4 --splits 2", "projective (", 0.04);
 }
 
@@ -289,8 +291,8 @@ fn light_before_the_near_plane_is_left_out() {
         let error = relative_rmse(&found.radiance("scattered"), &exact);
         let changed = relative_rmse(&from_eye.radiance("scattered"), &exact);
         println!("near plane {own}: {error:.4}, the stretch before it {changed:.3}");
-        assert!(error < 0.05, "{own}: {error}");
-        assert!(changed > 0.15, "the stretch before the plane is {changed} only");
+        assert!(error < 0.03, "{own}: {error}");
+        assert!(changed > 0.1, "the stretch before the plane is {changed} only");
     }
 }
 
