@@ -328,6 +328,23 @@ fn two_eyes_see_what_each_would() {
 }
 
 #[test]
+fn flags_of_the_filter_reach_it() {
+    let at = scene();
+    let setup = format!("{SUN} --rectification epipolar --extinction 0.2");
+    let run = |own: &str| Run::new(at.path(), "hall.obj", &format!("{setup}{own}")).buffers;
+    let plain = run("");
+    for (flag, changed) in [
+        (" --reference bisectrix", "slices"),
+        (" --regions 3", "bases"),
+        (" --average", "bases"),
+        (" --half", "bases"),
+        (" --bases 16", "bases"),
+    ] {
+        assert!(run(flag)[changed] != plain[changed], "{flag} does not change {changed}");
+    }
+}
+
+#[test]
 fn jitter_moves_samples_and_the_frame_moves_them_again() {
     let at = scene();
     let at = at.path();
