@@ -70,8 +70,9 @@ impl From<crate::scattering::SettingsError> for CommandError {
     fn from(error: crate::scattering::SettingsError) -> Self {
         use crate::scattering::SettingsError as E;
         let flag = match &error {
-            E::Bases(_) | E::BasesPerThread(_) | E::Regions(_) => "--bases",
-            E::OrthographicStart => "--projection",
+            E::Bases(_) | E::BasesPerThread(_) => "--bases",
+            E::Regions(_) => "--regions",
+            E::OrthographicStart => "--start",
             E::LightForm(_) | E::LightAtEye { .. } => "--light",
             E::Size { what, .. } => match *what {
                 "a picture" => "--size",

@@ -16,6 +16,7 @@ mod rectification;
 mod resolution;
 mod settings;
 mod upsample;
+mod views;
 
 pub use composite::Composite;
 pub use light_form::LightForm;
@@ -35,6 +36,7 @@ pub use settings::{
     check_size, epipole_near_picture,
 };
 pub use upsample::{Interpolated, Upsample};
+pub use views::{Method, ViewPasses, ViewSettings, ViewShafts, Views, ViewsBound};
 
 use crate::gpu::Gpu;
 use crate::pass::{Pass, PassError, Resource};

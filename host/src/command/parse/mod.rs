@@ -2,12 +2,9 @@
 //! Spellings that all commands share.
 
 mod light;
-// Not every command takes all of these.
-#[allow(dead_code)]
 mod view;
 
 pub use light::{LightSpelling, light};
-#[allow(unused_imports)]
 pub use view::{DepthSpelling, Projection, cascades, samples};
 
 use glam::Vec3;
@@ -38,6 +35,12 @@ pub fn number(text: &str) -> Result<f32, String> {
         .ok_or_else(|| format!("`{text}` is not a finite number"))
 }
 
+/// A finite number greater than 0.
+pub fn positive(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    if value > 0.0 { Ok(value) } else { Err(format!("`{text}` is impossible: it must be positive")) }
+}
+
 fn numbers(text: &str) -> Result<Vec<f32>, String> {
     text.split(',').map(number).collect()
 }
@@ -53,6 +56,10 @@ mod tests {
         assert_eq!(size("640x480").unwrap(), [640, 480]);
         for wrong in ["", "1,2", "1,2,3,4", "1,nan,3", "a,b,c", "inf,0,0"] {
             assert!(vector(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(positive("0.5"), Ok(0.5));
+        for wrong in ["", "0", "-1", "nan", "inf"] {
+            assert!(positive(wrong).is_err(), "{wrong}");
         }
         for wrong in ["", "640", "0x5", "-1x5", "640x", "axb", "1.5x2", "99999999999x1"] {
             assert!(size(wrong).is_err(), "{wrong}");

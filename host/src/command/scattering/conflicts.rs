@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Flags of `airlight scattering` that cannot be meant together.
+
+use super::flags::{
+    JitterSpelling, MethodSpelling, Options, RectificationSpelling, ReferenceSpelling, StartSpelling,
+};
+use crate::command::parse::{DepthSpelling, LightSpelling, Projection};
+
+/// What cannot be meant.
+pub struct Conflict {
+    /// The flag to change.
+    pub flag: &'static str,
+    /// What is wrong with it, and the remedy.
+    pub problem: &'static str,
+}
+
+/// The first conflict among the flags.
+pub fn find(flags: &Options) -> Option<Conflict> {
+    let rules = camera(flags).into_iter().chain(light(flags)).chain(march(flags)).chain(rows(flags));
+    rules.into_iter().find(|(refused, ..)| *refused).map(|(_, flag, problem)| Conflict { flag, problem })
+}
+
+/// Whether it is broken, the flag, the problem.
+type Rule = (bool, &'static str, &'static str);
+
+fn camera(flags: &Options) -> Vec<Rule> {
+    let orthographic = flags.camera == Projection::Orthographic;
+    vec![
+        (
+            orthographic && flags.fov.is_some(),
+            "--fov",
+            "an orthographic camera has no field of view: give --height",
+        ),
+        (
+            !orthographic && flags.height.is_some(),
+            "--height",
+            "a perspective camera has none: give --fov, or --camera orthographic",
+        ),
+        (
+            orthographic && flags.depth_range == DepthSpelling::Infinite,
+            "--depth-range",
+            "`infinite` is impossible for an orthographic camera: take reversed",
+        ),
+        (
+            orthographic && flags.stereo.is_some(),
+            "--stereo",
+            "an orthographic camera shows both eyes the same: take --camera perspective",
+        ),
+        (
+            orthographic && flags.start == Some(StartSpelling::Eye),
+            "--start",
+            "`eye` is impossible for an orthographic camera, whose rays begin at the near plane: leave it out",
+        ),
+    ]
+}
+
+fn light(flags: &Options) -> Vec<Rule> {
+    vec![
+        (
+            matches!(flags.light, LightSpelling::Point { .. }) && flags.light_texture.is_some(),
+            "--light-texture",
+            "a point light takes none: take a spot, or several",
+        ),
+        (
+            flags.local() && flags.cascades.is_some(),
+            "--cascades",
+            "they are for directional lights: leave them out for a spot or a point light",
+        ),
+    ]
+}
+
+fn march(flags: &Options) -> Vec<Rule> {
+    const NO_ROWS: &str = "a march has no rows: leave it out, or take --method fourier";
+    let march = flags.method == MethodSpelling::March;
+    let jitter = flags.jitter != JitterSpelling::None;
+    vec![
+        (march && flags.rectification != RectificationSpelling::Auto, "--rectification", NO_ROWS),
+        (march && flags.splits.is_some(), "--splits", NO_ROWS),
+        (march && flags.regions > 1, "--regions", NO_ROWS),
+        (march && flags.reference == ReferenceSpelling::Bisectrix, "--reference", NO_ROWS),
+        (
+            march && flags.camera == Projection::Perspective && flags.near_plane(),
+            "--start",
+            "the march begins at the eye: leave it out, or take --method fourier",
+        ),
+        (jitter && !march, "--jitter", "prefiltering takes no samples: leave it out, or take --method march"),
+        (
+            jitter && !flags.plain(),
+            "--jitter",
+            "only a directional light without --cascades and --light-texture is marched with it: leave it out",
+        ),
+        (
+            !jitter && flags.frame.is_some(),
+            "--frame",
+            "nothing changes with it: give --jitter gradient or blue-noise as well",
+        ),
+    ]
+}
+
+fn rows(flags: &Options) -> Vec<Rule> {
+    let orthographic = flags.camera == Projection::Orthographic;
+    let projective = flags.rectification == RectificationSpelling::Projective;
+    let epipolar = flags.rectification == RectificationSpelling::Epipolar;
+    let bisectrix = flags.reference == ReferenceSpelling::Bisectrix;
+    let weighted = flags.local() || flags.light_texture.is_some();
+    let fourier = flags.method == MethodSpelling::Fourier;
+    vec![
+        (projective && flags.local(), "--rectification", "`projective` is for directional lights: take auto"),
+        (
+            projective && flags.light_texture.is_some(),
+            "--rectification",
+            "`projective` rows take no --light-texture: take auto",
+        ),
+        (
+            projective && flags.cascades.is_some(),
+            "--rectification",
+            "`projective` rows take no --cascades: take auto",
+        ),
+        (epipolar && orthographic, "--rectification", "`epipolar` rows need a perspective camera: take auto"),
+        (
+            flags.regions > 1 && weighted,
+            "--regions",
+            "rows of a spot, a point light or a light texture are filtered in one region: leave it out",
+        ),
+        (
+            fourier && !orthographic && flags.near_plane() && weighted,
+            "--start",
+            "rays begin at the eye for a spot, a point light or a light texture: leave it out",
+        ),
+        (
+            flags.splits.is_some() && (epipolar || !flags.plain()),
+            "--splits",
+            "only projective rows are split, and these are epipolar: leave it out",
+        ),
+        (
+            flags.splits.is_some_and(|splits| splits > 1) && orthographic,
+            "--splits",
+            "rows of an orthographic camera are not split: leave it out",
+        ),
+        (
+            bisectrix && (projective || orthographic || flags.local()),
+            "--reference",
+            "`bisectrix` is for epipolar rows of a directional light: leave it out",
+        ),
+    ]
+}

@@ -1,0 +1,542 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! `airlight scattering` with every light and every input, each against a march of the same setup, and with flags that
+//! cannot be meant. What it does with bad files and numbers is tested in `command.rs`.
+//!
+//! `--nocapture` prints what was measured.
+#![allow(clippy::unwrap_used)]
+
+#[path = "support/command.rs"]
+mod command;
+#[path = "support/gpu.rs"]
+mod gpu;
+#[path = "support/npy.rs"]
+mod npy;
+
+use airlight::core::Jitter;
+use airlight::scattering::{
+    LightForm, March, Method, Prefiltered, Resolution, Settings, ViewSettings, Views, Weighting, choose,
+    projective_rows,
+};
+use airlight_tests::error::relative_rmse;
+use command::{files, refuses, succeeds};
+use glam::Vec3;
+use gpu::{gpu, shaders};
+use std::collections::BTreeMap;
+use std::path::Path;
+use tempfile::TempDir;
+
+const SIZE: [usize; 2] = [96, 64];
+/// The eye and the light of most setups.
+const EYE: &str = "--eye 0.5,1.2,6 --target 0,1.1,0";
+const SUN: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light directional:95,35";
+const SPOT: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light spot:-2,4,1,0,0.5,0,30";
+const POINT: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light point:-1.5,1.5,0.5";
+const ORTHOGRAPHIC: &str =
+    "--camera orthographic --eye 0.5,2,6 --target 0,1.1,0 --height 5 --near 1 --far 14";
+
+/// A ground, and over it a plate and a wall.
+fn scene() -> TempDir {
+    let at = tempfile::tempdir().unwrap();
+    let quads = [
+        "v -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\n",
+        "v -1.6 2 -1.2\nv 1.3 2 -1.2\nv 1.3 2 1.4\nv -1.6 2 1.4\n",
+        "v 1.6 0 -1.5\nv 1.8 1.9 -1.5\nv 1.8 1.9 1.1\nv 1.6 0 1.1\n",
+    ];
+    let faces = "f 1 4 3 2\nf 5 8 7 6\nf 9 12 11 10\n";
+    std::fs::write(at.path().join("hall.obj"), quads.concat() + faces).unwrap();
+    // As large, and without shadows above the ground.
+    let bare = format!("{}v 1.8 2 0\nf 1 4 3 2\n", quads[0]);
+    std::fs::write(at.path().join("bare.obj"), bare).unwrap();
+    let glass = image::RgbImage::from_fn(8, 8, |x, y| {
+        image::Rgb([if (x / 2 + y / 2) % 2 == 1 { 255 } else { 120 }, if x < 4 { 200 } else { 90 }, 160])
+    });
+    glass.save(at.path().join("glass.png")).unwrap();
+    at
+}
+
+/// What a run left behind.
+struct Run {
+    said: String,
+    buffers: BTreeMap<String, (Vec<usize>, Vec<f32>)>,
+}
+
+impl Run {
+    /// Runs the command at a small size.
+    #[track_caller]
+    fn new(at: &Path, mesh: &str, flags: &str) -> Self {
+        let folder = tempfile::tempdir_in(at).unwrap();
+        let [out, buffers] = ["picture.exr", "buffers"].map(|name| folder.path().join(name));
+        let (out, buffers) = (out.to_str().unwrap(), buffers.to_str().unwrap());
+        let own = "--size 96x64 --map 128x128 --shadow-map 256x256 --extinction 0.08 --g 0.3";
+        let mut arguments = vec!["scattering", "--mesh", mesh, "--out", out, "--buffers", buffers];
+        let flags_of_own: Vec<&str> = own.split(' ').collect();
+        let given: Vec<&str> = flags.split(' ').filter(|flag| !flag.is_empty()).collect();
+        let kept = flags_of_own.chunks(2).filter(|pair| !given.contains(&pair[0]));
+        arguments.extend(kept.flatten().chain(&given));
+        let said = succeeds(at, &arguments).out;
+        let arrays = files(Path::new(buffers)).into_keys();
+        let name = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let buffers: BTreeMap<_, _> = arrays.map(|path| (name(&path), npy::read_f32(&path))).collect();
+        for (name, (_, values)) in &buffers {
+            // Two integers among the words of `rows` are no floats.
+            let finite = values.iter().all(|value| value.is_finite());
+            assert!(finite, "{flags}: {name} is not finite");
+        }
+        let picture = image::open(out).unwrap().into_rgba32f();
+        let eyes = buffers.keys().filter(|name| name.ends_with("composed")).count();
+        assert_eq!(
+            [picture.width() as usize, picture.height() as usize],
+            [SIZE[0] * eyes, SIZE[1]],
+            "{flags}"
+        );
+        for (eye, name) in buffers.keys().filter(|name| name.ends_with("composed")).enumerate() {
+            let composed = &buffers[name].1;
+            for y in 0..SIZE[1] {
+                let row = 4 * (y * eyes + eye) * SIZE[0];
+                let written = &picture.as_raw()[row..row + 4 * SIZE[0]];
+                let shown = &composed[4 * y * SIZE[0]..4 * (y + 1) * SIZE[0]];
+                let same = written.iter().zip(shown).enumerate().all(|(i, (a, b))| i % 4 == 3 || a == b);
+                assert!(same, "{flags}: row {y} of {name} is not that of the picture");
+            }
+        }
+        Self { said, buffers }
+    }
+
+    fn reason(&self) -> &str {
+        self.said.lines().find_map(|line| line.strip_prefix("rectification: ")).unwrap()
+    }
+
+    fn radiance(&self, name: &str) -> Vec<f32> {
+        self.buffers[name].1.chunks_exact(4).flat_map(|texel| texel[..3].to_vec()).collect()
+    }
+
+    fn visibility(&self, name: &str) -> Vec<f32> {
+        self.buffers[name].1.chunks_exact(4).map(|texel| texel[3]).collect()
+    }
+}
+
+/// Runs a setup by rows, `own` being flags that a march has none of, and by a march of 512 steps; the first must have
+/// chosen the rows `reason` and agree within `tolerance`, which the shadows are well above.
+#[track_caller]
+fn agrees(at: &Path, setup: &str, own: &str, reason: &str, tolerance: f64) {
+    let found = Run::new(at, "hall.obj", &format!("{setup} {own}"));
+    let marched = Run::new(at, "hall.obj", &format!("{setup} --method march --steps 512"));
+    let bare = Run::new(at, "bare.obj", &format!("{setup} --method march --steps 64"));
+    assert!(found.reason().starts_with(reason), "{setup} {own}: {}", found.said);
+    assert_eq!(marched.reason(), "none (--method march)");
+    for name in marched.buffers.keys().filter(|name| name.ends_with("scattered")) {
+        let exact = marched.radiance(name);
+        let error = relative_rmse(&found.radiance(name), &exact);
+        let shadows = relative_rmse(&marched.visibility(name), &bare.visibility(name));
+        let mean = exact.iter().map(|value| f64::from(*value)).sum::<f64>() / exact.len() as f64;
+        println!("{setup} {own}: {name} off by {error:.4}, shadows {shadows:.3}, mean {mean:.3}");
+        assert!(error <= tolerance, "{setup} {own}: {name} is off by {error:.4}, {tolerance} is allowed");
+        assert!(shadows > 2.0 * tolerance, "{setup}: shadows of {shadows:.4} show nothing");
+        assert!(mean > 1e-3, "{setup}: {name} is black");
+    }
+}
+
+#[test]
+fn rows_of_a_directional_light_agree_with_the_march() {
+    let at = scene();
+    let at = at.path();
+    agrees(at, SUN, "", "projective (", 0.03);
+    agrees(at, SUN, "--rectification projective --splits 4", "projective (as asked for)", 0.03);
+    let rows = &Run::new(at, "hall.obj", &format!("{SUN} --splits 4")).buffers["rows"];
+    // The words of the uniform; the number of splits is an integer.
+    assert_eq!((rows.0[0], rows.1[22].to_bits()), (24, 4));
+    agrees(at, SUN, "--rectification epipolar", "epipolar (as asked for)", 0.03);
+    agrees(at, SUN, "--reference bisectrix --regions 3", "epipolar (--reference", 0.03);
+    let ahead = format!("{EYE} --light directional:185,12");
+    // Rows around a light in the picture hold rays of all angles, which share their weights; plain means are exact.
+    agrees(at, &ahead, "--half --bases 64", "epipolar (the light is in the picture", 0.06);
+    agrees(at, &format!("{ahead} --average"), "--half --bases 64", "epipolar (the light is in", 0.03);
+    agrees(at, &format!("{SUN} --average"), "--regions 4 --splits 2", "projective (", 0.04);
+}
+
+#[test]
+fn depth_of_every_kind_is_taken() {
+    let at = scene();
+    let at = at.path();
+    agrees(at, &format!("{SUN} --depth-range reversed"), "", "projective (", 0.03);
+    agrees(at, &format!("{SUN} --depth-range infinite --far 14"), "", "projective (", 0.03);
+    agrees(at, &format!("{POINT} --depth-range infinite"), "", "epipolar (", 0.03);
+    agrees(at, &format!("{SUN} --samples 4"), "--rectification epipolar", "epipolar (", 0.03);
+    // Several samples change the edges of the picture, and nothing but those.
+    let [one, four] = ["1", "4"]
+        .map(|n| Run::new(at, "hall.obj", &format!("{SUN} --method march --steps 64 --samples {n}")).buffers);
+    let pairs = one["depth"].1.iter().zip(&four["depth"].1);
+    let changed = pairs.filter(|(a, b)| (**a - **b).abs() > 1e-3 * **a).count();
+    assert_eq!(one["depth"].0, [SIZE[1], SIZE[0]]);
+    assert_eq!(four["depth"].0, [SIZE[1], SIZE[0]]);
+    assert!((20..1500).contains(&changed), "{changed} depths changed");
+}
+
+#[test]
+fn orthographic_cameras_are_rectified_or_marched() {
+    let at = scene();
+    let at = at.path();
+    let sun = format!("{ORTHOGRAPHIC} --light directional:95,35");
+    agrees(at, &sun, "--start near-plane", "projective (", 0.05);
+    agrees(at, &format!("{sun} --depth-range reversed"), "--resolution half", "projective (", 0.05);
+    for (light, reason) in [
+        ("--light point:-1.5,1.5,0.5", "none, marched instead (an orthographic"),
+        ("--light directional:95,35 --cascades 2", "none, marched instead (an orthographic"),
+        // Along the view: the target is at (-0.5, -0.9, -6) from the eye.
+        ("--light directional:4.7636,8.4993", "none, marched instead (the "),
+    ] {
+        agrees_exactly(at, &format!("{ORTHOGRAPHIC} {light}"), reason);
+    }
+    // No flag but the camera: the mesh is framed.
+    let framed = Run::new(at, "hall.obj", "--camera orthographic");
+    let [lit, seen] =
+        [("scattered", 3, 0.05..1.01), ("depth", 0, 0.05..0.95)].map(|(name, channel, range)| {
+            let (shape, values) = &framed.buffers[name];
+            let texels = values.chunks_exact(if shape.len() == 3 { 4 } else { 1 });
+            texels.filter(|texel| range.contains(&texel[channel])).count()
+        });
+    assert!(lit > 3000 && seen > 200, "{lit} pixels are lit, {seen} see the mesh");
+}
+
+/// Where rows do not exist the picture is the march's.
+#[track_caller]
+fn agrees_exactly(at: &Path, setup: &str, reason: &str) {
+    let found = Run::new(at, "hall.obj", setup);
+    let marched = Run::new(at, "hall.obj", &format!("{setup} --method march"));
+    assert!(found.reason().starts_with(reason), "{setup}: {}", found.said);
+    assert!(found.buffers["scattered"] == marched.buffers["scattered"], "{setup}");
+    let mean = found.radiance("scattered").iter().sum::<f32>() / found.buffers["scattered"].1.len() as f32;
+    assert!(mean > 1e-4, "{setup}: black");
+}
+
+#[test]
+fn spots_and_point_lights_agree_with_the_march() {
+    let at = scene();
+    let at = at.path();
+    agrees(at, SPOT, "", "epipolar (rows of a spot", 0.08);
+    agrees(at, SPOT, "--half --bases 64 --rectification epipolar", "epipolar (as asked for)", 0.06);
+    agrees(at, POINT, "", "epipolar (rows of a spot", 0.03);
+    agrees(at, &format!("{POINT} --average"), "", "epipolar (", 0.03);
+    agrees_exactly(at, &format!("{EYE} --light point:0.5,1.2,6"), "none, marched instead (the eye is 0 m");
+}
+
+#[test]
+fn light_textures_and_cascades_agree_with_the_march() {
+    let at = scene();
+    let at = at.path();
+    agrees(at, &format!("{SUN} --light-texture glass.png"), "", "epipolar (a light texture", 0.04);
+    agrees(at, &format!("{SPOT} --light-texture glass.png"), "", "epipolar (", 0.1);
+    agrees(at, &format!("{SUN} --cascades 3"), "--regions 2", "epipolar (cascades", 0.03);
+    agrees(at, &format!("{SUN} --cascades 2 --light-texture glass.png"), "", "epipolar (", 0.04);
+    let glass = Run::new(at, "hall.obj", &format!("{SUN} --light-texture glass.png --method march"));
+    let white = Run::new(at, "hall.obj", &format!("{SUN} --method march"));
+    let changed = relative_rmse(&glass.radiance("scattered"), &white.radiance("scattered"));
+    assert!(changed > 0.2, "the texture changes the light by {changed} only");
+    let cascades = Run::new(at, "hall.obj", &format!("{SUN} --cascades 3"));
+    assert_eq!(cascades.buffers["shadow_maps"].0, [3, 256, 256]);
+}
+
+#[test]
+fn fewer_pixels_agree_with_the_march_of_all() {
+    let at = scene();
+    let at = at.path();
+    // The march is full; its own reduction is compared as well.
+    agrees_with_full(at, SUN, "--resolution half", [48, 32], 0.04);
+    agrees_with_full(at, SUN, "--rectification epipolar --resolution quarter", [24, 16], 0.06);
+    agrees_with_full(at, SUN, "--method march --resolution quarter", [24, 16], 0.06);
+    agrees_with_full(at, SPOT, "--resolution half", [48, 32], 0.1);
+}
+
+#[track_caller]
+fn agrees_with_full(at: &Path, setup: &str, own: &str, [width, height]: [usize; 2], tolerance: f64) {
+    let found = Run::new(at, "hall.obj", &format!("{setup} {own}"));
+    let full = Run::new(at, "hall.obj", &format!("{setup} --method march"));
+    let error = relative_rmse(&found.radiance("scattered"), &full.radiance("scattered"));
+    println!("{setup} {own}: {error:.4}");
+    assert!(error <= tolerance, "{setup} {own}: off by {error}, {tolerance} is allowed");
+    assert_eq!(found.buffers["reduced_scattered"].0, [height, width, 4]);
+    assert_eq!(found.buffers["reduced_depth"].0, [height, width]);
+    assert_eq!(found.buffers["scattered"].0, [SIZE[1], SIZE[0], 4]);
+}
+
+#[test]
+fn light_before_the_near_plane_is_left_out() {
+    let at = scene();
+    let at = at.path();
+    // All is lit before the plane: what lies there has a closed form.
+    let (extinction, near) = (0.08, 1.5);
+    let setup = format!("{SUN} --near {near} --fov 40 --g 0 --albedo 1 --radiance 10,10,10 --far 16");
+    let from_eye = Run::new(at, "hall.obj", &format!("{setup} --method march --steps 512"));
+    let (half_height, half_width) = {
+        let tangent = 20f64.to_radians().tan();
+        (tangent, tangent * SIZE[0] as f64 / SIZE[1] as f64)
+    };
+    let exact: Vec<f64> = from_eye
+        .radiance("scattered")
+        .iter()
+        .enumerate()
+        .map(|(i, radiance)| {
+            let (x, y) = (i / 3 % SIZE[0], i / 3 / SIZE[0]);
+            let place = |at: usize, of: usize| (at as f64 + 0.5) / of as f64 * 2.0 - 1.0;
+            let slant =
+                (1.0 + (half_width * place(x, SIZE[0])).powi(2) + (half_height * place(y, SIZE[1])).powi(2))
+                    .sqrt();
+            let before = extinction * near * slant;
+            let skipped = 10.0 / (4.0 * std::f64::consts::PI) * (1.0 - (-before).exp());
+            (f64::from(*radiance) - skipped) * before.exp()
+        })
+        .collect();
+    for own in ["--rectification epipolar", "--rectification projective", "--resolution half"] {
+        let found = Run::new(at, "hall.obj", &format!("{setup} --start near-plane {own}"));
+        let error = relative_rmse(&found.radiance("scattered"), &exact);
+        let changed = relative_rmse(&from_eye.radiance("scattered"), &exact);
+        println!("near plane {own}: {error:.4}, the stretch before it {changed:.3}");
+        assert!(error < 0.03, "{own}: {error}");
+        assert!(changed > 0.1, "the stretch before the plane is {changed} only");
+    }
+}
+
+#[test]
+fn two_eyes_see_what_each_would() {
+    let at = scene();
+    let at = at.path();
+    // The camera's right is +x turned towards -z, seen from (0.5, 1.2, 6) at (0, 1.1, 0).
+    let look = Vec3::new(-0.5, -0.1, -6.0);
+    let right = look.cross(Vec3::Y).normalize() * 0.2;
+    for (light, reason) in [("directional:95,35", "projective"), ("spot:-2,4,1,0,0.5,0,30", "epipolar")] {
+        let own = format!("--light {light} --radiance 20,20,20 --near 0.05 --far 14");
+        let both = Run::new(at, "hall.obj", &format!("{EYE} {own} --stereo 0.4"));
+        assert!(both.reason().starts_with(reason), "{}", both.said);
+        for (name, side) in [("left_", -right), ("right_", right)] {
+            let eye = Vec3::new(0.5, 1.2, 6.0) + side;
+            let target = eye + look;
+            let at_eye = format!(
+                "--eye {},{},{} --target {},{},{}",
+                eye.x, eye.y, eye.z, target.x, target.y, target.z
+            );
+            let one = Run::new(at, "hall.obj", &format!("{at_eye} {own}"));
+            for buffer in ["scattered", "composed", "rectified"] {
+                let [both, one] = [&both.buffers[&format!("{name}{buffer}")], &one.buffers[buffer]];
+                let error = relative_rmse(&both.1, &one.1);
+                println!("{light} {name}{buffer}: {error:.1e}");
+                assert!(error < 0.01, "{light} {name}{buffer}: {error}");
+            }
+        }
+        let [left, right] = ["left_", "right_"].map(|name| both.radiance(&format!("{name}scattered")));
+        assert!(relative_rmse(&left, &right) > 0.03, "both eyes see the same");
+    }
+}
+
+#[test]
+fn flags_of_the_filter_reach_it() {
+    let at = scene();
+    let setup = format!("{SUN} --rectification epipolar --extinction 0.2");
+    let run = |own: &str| Run::new(at.path(), "hall.obj", &format!("{setup}{own}")).buffers;
+    let plain = run("");
+    for (flag, changed) in [
+        (" --reference bisectrix", "slices"),
+        (" --regions 3", "bases"),
+        (" --average", "bases"),
+        (" --half", "bases"),
+        (" --bases 16", "bases"),
+    ] {
+        assert!(run(flag)[changed] != plain[changed], "{flag} does not change {changed}");
+    }
+}
+
+#[test]
+fn jitter_moves_samples_and_the_frame_moves_them_again() {
+    let at = scene();
+    let at = at.path();
+    let run = |flags: &str| Run::new(at, "hall.obj", &format!("{SUN} --method march {flags}"));
+    let exact = run("--steps 512").radiance("scattered");
+    let plain = run("--steps 8").radiance("scattered");
+    for jitter in ["gradient", "blue-noise"] {
+        let [first, again, second] = ["", " --frame 0", " --frame 1"]
+            .map(|frame| run(&format!("--steps 8 --jitter {jitter}{frame}")).radiance("scattered"));
+        assert!(first == again && first != second && first != plain, "{jitter}");
+        for picture in [&first, &second] {
+            let error = relative_rmse(picture, &exact);
+            println!("{jitter}: {error:.4}");
+            assert!(error < 0.15, "{jitter}: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_rows_are_told_unless_quiet() {
+    let at = scene();
+    let run = |flags: &[&str]| {
+        let own = ["scattering", "--mesh", "hall.obj", "--out", "x.png", "--size", "32x24", "--map", "64x64"];
+        succeeds(at.path(), &[&own[..], flags].concat()).out
+    };
+    let told = run(&[]);
+    assert_eq!(told.lines().count(), 2, "{told}");
+    assert!(told.starts_with("rectification: ") && told.ends_with("x.png\n"), "{told}");
+    assert_eq!(run(&["--quiet"]), "");
+}
+
+#[test]
+fn flags_that_cannot_be_meant_are_refused() {
+    let at = scene();
+    std::fs::write(at.path().join("no.png"), "no picture").unwrap();
+    let refused = |flags: &str, code: i32, parts: &[&str]| {
+        let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr", "--size", "32x24"];
+        arguments.extend(["--map", "64x64"].into_iter().chain(flags.split(' ')));
+        refuses(at.path(), &arguments, code, parts);
+    };
+    let bad = |flags: &str, parts: &[&str]| refused(flags, 2, parts);
+    // Values.
+    bad("--light spot:0,1,0,0,0,0,90", &["--light", "80"]);
+    bad("--light area:1", &["--light", "not there yet"]);
+    for count in ["0", "7", "many", "-1"] {
+        bad(&format!("--cascades={count}"), &["--cascades", count]);
+    }
+    bad("--camera fisheye", &["--camera", "fisheye", "orthographic"]);
+    bad("--depth-range backward", &["--depth-range", "backward", "infinite"]);
+    bad("--samples 2", &["--samples", "`2`", "1 and 4"]);
+    for metres in ["0", "-1", "nan", "wide"] {
+        bad(&format!("--stereo={metres}"), &["--stereo", metres]);
+    }
+    for metres in ["0", "-3"] {
+        bad(&format!("--camera orthographic --height={metres}"), &["--height", metres]);
+    }
+    bad("--camera orthographic --near 3 --far 2", &["--near, --far", "3", "2"]);
+    bad("--depth-range infinite --near 3 --far 2", &["--near, --far", "3", "2"]);
+    bad("--rectification polar", &["--rectification", "polar", "epipolar"]);
+    bad("--splits 5", &["--splits", "5"]);
+    bad("--regions 0", &["--regions", "0"]);
+    bad("--regions 9", &["--regions", "9"]);
+    bad("--resolution third", &["--resolution", "third", "quarter"]);
+    bad("--method march --jitter white", &["--jitter", "white", "blue-noise"]);
+    bad("--method march --jitter gradient --frame -1", &["--frame", "-1"]);
+    bad("--start nowhere", &["--start", "nowhere", "near-plane"]);
+    bad("--reference worst", &["--reference", "worst", "bisectrix"]);
+    bad("--radiance 20000,1,1", &["--radiance", "1e4"]);
+    bad("--light point:0,3,0 --radiance 1e9,1,1", &["--radiance", "1e8"]);
+    refused("--light-texture none.png", 1, &["--light-texture", "none.png"]);
+    refused("--light-texture no.png", 1, &["--light-texture", "no.png"]);
+    // Together.
+    let orthographic = "--camera orthographic";
+    let (spot, point) = ("--light spot:0,4,0,0,0,0.1,30", "--light point:0,3,0");
+    bad(&format!("{orthographic} --fov 30"), &["--fov", "--height"]);
+    bad("--height 3", &["--height", "--fov"]);
+    bad(&format!("{orthographic} --depth-range infinite"), &["--depth-range", "reversed"]);
+    bad(&format!("{orthographic} --stereo 0.1"), &["--stereo", "perspective"]);
+    bad(&format!("{orthographic} --start eye"), &["--start", "near plane"]);
+    bad(&format!("{point} --light-texture glass.png"), &["--light-texture", "spot"]);
+    bad(&format!("{spot} --cascades 2"), &["--cascades", "leave them out"]);
+    bad(&format!("{point} --cascades 2"), &["--cascades", "leave them out"]);
+    for flag in ["--rectification projective", "--splits 2", "--regions 2", "--reference bisectrix"] {
+        bad(&format!("--method march {flag}"), &[flag.split(' ').next().unwrap(), "--method fourier"]);
+    }
+    bad("--method march --start near-plane", &["--start", "--method fourier"]);
+    bad("--jitter gradient", &["--jitter", "--method march"]);
+    bad(&format!("--method march {spot} --jitter gradient"), &["--jitter", "leave it out"]);
+    bad("--method march --cascades 2 --jitter blue-noise", &["--jitter", "leave it out"]);
+    bad("--method march --frame 3", &["--frame", "--jitter"]);
+    for light in [spot, point] {
+        bad(&format!("{light} --rectification projective"), &["--rectification", "take auto"]);
+        bad(&format!("{light} --regions 2"), &["--regions", "leave it out"]);
+        bad(&format!("{light} --start near-plane"), &["--start", "leave it out"]);
+        bad(&format!("{light} --splits 2"), &["--splits", "leave it out"]);
+        bad(&format!("{light} --reference bisectrix"), &["--reference", "leave it out"]);
+    }
+    bad("--light-texture glass.png --rectification projective", &["--rectification", "take auto"]);
+    bad("--light-texture glass.png --regions 2", &["--regions", "leave it out"]);
+    bad("--light-texture glass.png --start near-plane", &["--start", "leave it out"]);
+    bad("--cascades 2 --rectification projective", &["--rectification", "take auto"]);
+    bad("--rectification epipolar --splits 2", &["--splits", "leave it out"]);
+    bad("--rectification projective --reference bisectrix", &["--reference", "leave it out"]);
+    bad(&format!("{orthographic} --rectification epipolar"), &["--rectification", "take auto"]);
+    bad(&format!("{orthographic} --splits 2"), &["--splits", "leave it out"]);
+    bad(&format!("{orthographic} --reference bisectrix"), &["--reference", "leave it out"]);
+    // What only camera and light together say.
+    let ahead = format!("{EYE} --light directional:185,12 --rectification projective");
+    bad(&ahead, &["--rectification", "`projective`", "in the picture", "auto"]);
+    let behind = format!("{EYE} --light directional:5,-2 --rectification projective");
+    bad(&behind, &["--rectification", "`projective`", "opposite to the light", "auto"]);
+    let along = format!("{orthographic} --eye 0,1,5 --target 0,1,0 --light directional:0,0");
+    bad(&format!("{along} --rectification projective"), &["--rectification", "parallel", "auto"]);
+    let lamp = "--eye 0,2,5 --light point:0,2,5 --rectification epipolar";
+    bad(lamp, &["--rectification", "`epipolar`", "march"]);
+}
+
+#[test]
+fn awkward_sizes_draw() {
+    let at = scene();
+    for flags in [
+        "--size 1x1 --map 1x1 --shadow-map 1x1 --splits 4",
+        "--size 5x3 --map 2x3 --shadow-map 1x1 --regions 8 --resolution quarter",
+        "--size 1x1 --map 3x1 --light point:0,3,0 --resolution half",
+        "--size 3x2 --map 1x2 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png",
+    ] {
+        let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr", "--bases", "4"];
+        arguments.extend(flags.split(' '));
+        succeeds(at.path(), &arguments);
+        let picture = image::open(at.path().join("x.exr")).unwrap().into_rgba32f();
+        assert!(picture.as_raw().iter().all(|value| value.is_finite()), "{flags}");
+    }
+}
+
+#[test]
+fn views_of_one_call_are_those_of_their_own() {
+    let _turn = gpu::turn();
+    let scene = gpu::torus_over_plane();
+    let stage = scene.stage([64, 48], [256, 256]);
+    let settings = Settings { map: [128, 128], ..Settings::default() };
+    let (camera, light) = (stage.camera, &stage.light);
+    let limit = stage.medium.distance_limit;
+    let march = Method::March {
+        form: LightForm::default(),
+        steps: 64,
+        weighting: Weighting::Transmittance,
+        jitter: Jitter::None,
+        frame: 0,
+    };
+    let mut views = vec![
+        ViewSettings { camera, resolution: None, method: Method::Epipolar(settings) },
+        ViewSettings { camera, resolution: None, method: march.clone() },
+        ViewSettings { camera, resolution: Some(Resolution::Half), method: march.clone() },
+    ];
+    let rows = projective_rows(&camera, light.direction, limit, 2);
+    println!("{:?}", choose(&camera, light.direction, limit, 2));
+    views.extend(rows.map(|rows| ViewSettings {
+        camera,
+        resolution: None,
+        method: Method::Projective(settings, Box::new(rows)),
+    }));
+    let record = |views: &[ViewSettings]| {
+        let made = Views::new(gpu(), shaders(), views).unwrap();
+        let inputs = vec![stage.inputs(); views.len()];
+        let bound = made.bind(gpu(), &inputs).unwrap();
+        let mut encoder = gpu().encoder();
+        made.record(&mut encoder, &bound);
+        gpu().submit(encoder).unwrap();
+        made.views.iter().map(|view| view.scattered().read(gpu()).unwrap()).collect::<Vec<_>>()
+    };
+    let together = record(&views);
+    for (view, picture) in views.iter().zip(&together) {
+        assert!(record(std::slice::from_ref(view))[0] == *picture, "{:?}", view.method);
+        assert_eq!(picture.len(), 64 * 48 * 4);
+    }
+    // And those of the passes by themselves.
+    let alone = Prefiltered::new(gpu(), shaders(), settings, [64, 48]).unwrap();
+    let bound = alone.bind(gpu(), &stage.inputs()).unwrap();
+    let mut encoder = gpu().encoder();
+    alone.record(&mut encoder, &bound);
+    let along = airlight::scattering::Along::ShadowMap { steps: 64 };
+    let marched = March::new(gpu(), shaders(), &along, Weighting::Transmittance, [64, 48]).unwrap();
+    let bound = marched.bind(gpu(), &stage.inputs(), &along).unwrap();
+    marched.record(&mut encoder, &bound);
+    gpu().submit(encoder).unwrap();
+    assert!(alone.scattered.read(gpu()).unwrap() == together[0]);
+    assert!(marched.scattered.read(gpu()).unwrap() == together[1]);
+    let half = relative_rmse(&together[2], &together[1]);
+    assert!(half > 0.0 && half < 0.1, "half the resolution: {half}");
+    // Jitter that no march of this light has.
+    let form = LightForm { spot: true, ..LightForm::default() };
+    let Method::March { steps, weighting, frame, .. } = march else { unreachable!() };
+    let method = Method::March { form, steps, weighting, jitter: Jitter::Gradient, frame };
+    assert!(Views::new(gpu(), shaders(), &[ViewSettings { camera, resolution: None, method }]).is_err());
+}
