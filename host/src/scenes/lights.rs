@@ -76,6 +76,40 @@ pub fn spot() -> Result<Scene, SceneError> {
     })
 }
 
+/// The same hall with a slide in the spot, and no bars in its way.
+pub fn slide() -> Result<Scene, SceneError> {
+    Ok(Scene {
+        name: "slide",
+        title: "A slide in a spot",
+        light_texture: Some(rose([1024, 1024])),
+        ..spot()?
+    })
+}
+
+/// A rose window: rings of petals in two hues between dark leads.
+fn rose(size: [u32; 2]) -> LightImage {
+    LightImage::from_function(size, |uv| {
+        let at = 2.0 * uv - Vec2::ONE;
+        let (radius, turn) = (at.length(), at.y.atan2(at.x) / TAU + 0.5);
+        let (ring, petals) = match radius {
+            r if r < 0.16 => (0, 1.0),
+            r if r < 0.46 => (1, 8.0),
+            r if r < 0.76 => (2, 16.0),
+            _ => (3, 32.0),
+        };
+        let across = (turn * petals).fract().min(1.0 - (turn * petals).fract()) / petals * TAU * radius;
+        let edges = [0.16, 0.46, 0.76];
+        let lead = edges.iter().any(|edge| (radius - edge).abs() < 0.02) || (ring > 0 && across < 0.015);
+        let hues = [
+            [Vec3::new(1.0, 0.85, 0.4), Vec3::new(1.0, 0.85, 0.4)],
+            [Vec3::new(1.0, 0.12, 0.05), Vec3::new(1.0, 0.5, 0.06)],
+            [Vec3::new(0.06, 0.25, 1.0), Vec3::new(0.1, 0.75, 0.9)],
+            [Vec3::new(0.5, 0.08, 0.9), Vec3::new(0.9, 0.15, 0.5)],
+        ];
+        if lead { Vec3::ZERO } else { hues[ring][(turn * petals) as usize % 2] }
+    })
+}
+
 /// A pierced lantern between columns: rays to all sides, and dots of light on everything around.
 pub fn lamp() -> Result<Scene, SceneError> {
     let mut mesh = Mesh::default();
