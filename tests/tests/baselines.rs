@@ -10,7 +10,7 @@ mod gpu;
 
 use airlight::command::baselines::{Baseline, Competitor};
 use airlight::scattering::{Along, March, Prefiltered, Rectification, Settings, Weighting};
-use airlight::{Setting, Shaders, Stage, scenes};
+use airlight::{Shaders, Stage, scenes};
 use airlight_tests::baselines::{PASSES, SYSTEM, variance};
 use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;
@@ -62,7 +62,7 @@ struct Pixel {
 impl Case {
     fn new(name: &str, map: [u32; 2]) -> Self {
         let scene = scenes::scene(name).unwrap().unwrap();
-        let Setting { view, .. } = scene.setting();
+        let view = scene.setting().view.perspective().unwrap();
         let stage = Stage::new(gpu(), gpu::raster(), &scene.setting(), PICTURE, [1024, 1024]).unwrap();
         let map = Rectification::new(gpu(), shaders(), map).unwrap();
         let bound = map.bind(gpu(), &stage.inputs()).unwrap();

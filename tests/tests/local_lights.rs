@@ -188,16 +188,12 @@ fn panes() -> LightImage {
 }
 
 struct Scattered {
-    visibility: Vec<f32>,
     radiance: Vec<f32>,
 }
 
 fn scattered(texture: &Texture) -> Scattered {
     let values = texture.read(gpu()).unwrap();
-    Scattered {
-        visibility: values.chunks_exact(4).map(|texel| texel[3]).collect(),
-        radiance: values.chunks_exact(4).flat_map(|texel| texel[..3].to_vec()).collect(),
-    }
+    Scattered { radiance: values.chunks_exact(4).flat_map(|texel| texel[..3].to_vec()).collect() }
 }
 
 fn prefiltered(case: &Case, settings: Settings) -> (Prefiltered, Scattered) {
@@ -377,10 +373,17 @@ fn radiance_reaches_its_figures() {
 #[test]
 fn one_cascade_is_the_single_map() {
     let _turn = gpu::turn();
-    let plain = Case::new("sun", sun(), None, None);
+    let mut plain = Case::new("sun", sun(), None, None);
     let mut cascades = Case::new("cascades", sun(), None, Some(Cascades::new(1)));
-    // The same map and matrix, as an array of one.
-    let map = plain.stage.pictures.shadow_map.read(gpu()).unwrap();
+    // The same map and matrix, as an array of one. Its border is blocked, for light rays beyond it are not.
+    let mut map = plain.stage.pictures.shadow_map.read(gpu()).unwrap();
+    let side = SHADOW[0] as usize;
+    for (i, depth) in map.iter_mut().enumerate() {
+        if [i % side, i / side].iter().any(|at| *at == 0 || *at == side - 1) {
+            *depth = 0.0;
+        }
+    }
+    plain.stage.pictures.shadow_map = gpu::texture(SHADOW, R32Float, &map);
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
     let array = Texture::array(gpu(), [SHADOW[0], SHADOW[1], 1], R32Float, usage);
     array.write(gpu(), &map).unwrap();
@@ -455,7 +458,8 @@ fn a_half_space_blocker_leaves_the_other_half() {
         position: Vec3::new(0.0, 6.0, 0.0),
         target: Vec3::ZERO,
         outer_degrees: 60.0,
-        inner_degrees: 59.0,
+        // A wide fall-off, so that what is lit and what is not differ in it.
+        inner_degrees: 5.0,
         intensity: Vec3::splat(100.0),
         radius: 0.02,
     };
@@ -534,7 +538,7 @@ fn wild_light(random: &mut Random, camera: &ReferenceCamera, point: bool) -> Lig
 
 #[test]
 fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
-    const COUNT: usize = 500;
+    const COUNT: usize = 240;
     const PICTURE: [u32; 2] = [16, 8];
     const MAP: [u32; 2] = [16, 8];
     let _turn = gpu::turn();

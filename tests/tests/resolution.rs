@@ -14,7 +14,7 @@ use airlight::scattering::{
     TOLERANCE, Upsample, Weighting,
 };
 use airlight::validate::Definitions;
-use airlight::{Buffer, Pass, Setting, Stage, Texture, scenes};
+use airlight::{Buffer, Pass, Stage, Texture, scenes};
 use airlight_tests::error;
 use airlight_tests::linear;
 use airlight_tests::reference::camera::Camera as ReferenceCamera;
@@ -126,7 +126,7 @@ struct Case {
 impl Case {
     fn new(name: &str, size: [u32; 2]) -> Self {
         let scene = scenes::scene(name).unwrap().unwrap();
-        let Setting { view, .. } = scene.setting();
+        let view = scene.setting().view.perspective().unwrap();
         let stage = Stage::new(gpu(), gpu::raster(), &scene.setting(), size, [1024, 1024]).unwrap();
         let map = rectified(&stage.inputs());
         Self { stage, map, view, size }
@@ -321,6 +321,9 @@ impl Bench {
             medium: &self.medium,
             depth,
             shadow_map: &self.shadow_map,
+            shadow_maps: None,
+            shadow_views: None,
+            light_texture: None,
         }
     }
 

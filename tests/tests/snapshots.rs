@@ -55,7 +55,7 @@ fn check(scene_name: &str, scene: &TestScene) {
     let map = &method.rectification;
     let frame = Buffer {
         adapter: gpu().description(),
-        shape: [4, 4, 1],
+        shape: [4, 8, 1],
         tolerance: tolerance(1e-5, 1e-5, 0.0),
         values: map.frame.read_floats(gpu()).unwrap(),
     };

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::scattering::local_light
 // summary: Epipolar rows around a light at a point, spot or point light, and the light that air scatters along a view ray.
-// source: thesis 4.3.2 ("other light sources") and 4.4.1; W. Pegoraro and S. Parker, "An analytical solution to single
-// source: scattering in homogeneous participating media" (2009); C. Kulla and M. Fajardo (2012) for equal angles.
+// source: thesis 4.3.2 ("other light sources") and 4.4.1; W. Pegoraro and S. Parker, "An analytical solution to single scattering in homogeneous participating media" (2009); C. Kulla and M. Fajardo (2012) for equal angles.
 // note: `theta` is the angle at the eye, from the direction to the light; the light angle `alpha` is the angle at the
 // note: light, from the direction to the eye. On a view ray theta is constant and alpha grows; on a light ray alpha is
 // note: constant and theta grows away from the light: lit if and only if theta_ray <= theta_stored.
@@ -184,10 +183,11 @@ fn light_angle_of_column(slice: LocalSlice, unit: f32) -> f32 {
 }
 
 /// Weight in the means of a row of the column with the light angle `at_light`, positive, 1 at the light angle 0: phase function
-/// times transmittance on a ray midway between those of the slice that meet this light ray. `away`: of the light, metres.
+/// times transmittance on a ray between those of the slice that meet this light ray, nearer to the brighter ones: at the
+/// geometric mean of their angles, cf. Eq. 4.12. `away`: of the light, metres.
 fn column_weight(slice: LocalSlice, away: f32, at_light: f32, medium: Medium) -> f32 {
     let farthest = max(min(slice.angle_max, PI - at_light), slice.angle_min);
-    let angle = 0.5 * (slice.angle_min + farthest);
+    let angle = sqrt(max(slice.angle_min, 0.1 * farthest) * farthest);
     // (sin alpha + sin theta) / sin(alpha + theta): what the light passes through, over the distance to the light.
     let path = cos(0.5 * (at_light - angle)) / max(cos(0.5 * (at_light + angle)), 1e-6);
     let air = exp(-min(medium.extinction * away * max(path - 1.0, 0.0), 12.0));
@@ -247,7 +247,7 @@ fn sine_of_area(x: f32) -> f32 {
 }
 
 /// The airlight integral on one side of the closest point. `side`: -1 before it, 1 beyond; `from_along`, `to_along`: metres from
-/// the closest point, not negative, the first less than the second; `stretch`: the scale within which the integrand changes fast near zero.
+/// the closest point, not negative, the first not greater than the second; `stretch`: the scale within which the integrand changes fast near zero.
 fn airlight_side(
     ray: LocalRay, side: f32, from_along: f32, to_along: f32, stretch: f32, extinction: f32, g: f32
 ) -> f32 {
@@ -260,20 +260,24 @@ fn airlight_side(
     let half = 0.5 * area_sine(span * (a + b) / (b * sqrt(1.0 + a * a) + a * sqrt(1.0 + b * b)));
     let middle = first + half;
     var sum = 0.0;
-    for (var node = 0u; node < 8u; node++) {
-        let at = middle + half * select(-NODES[node & 3u], NODES[node & 3u], node >= 4u);
+    for (var pair = 0u; pair < 8u; pair++) {
+        // An index into a constant vector would be a table in memory.
+        let picked = select(vec4<f32>(0.0), vec4<f32>(1.0), vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(pair >> 1u));
+        let node = dot(NODES, picked);
+        let at = middle + half * select(node, -node, (pair & 1u) == 0u);
+        let growth = exp(at);
         let angle = max(stretch * sine_of_area(at), 1e-12);
         let along = clamp(ray.closest + side * h * cos(angle) / sin(angle), 0.0, 1e15);
         let phase = henyey_greenstein(cosine_to_light(ray, along), g);
         let air = exp(-min(extinction * path_through_air(ray, along), 200.0));
-        sum += WEIGHTS[node & 3u] * phase * air * cosh(at);
+        sum += dot(WEIGHTS, picked) * phase * air * 0.5 * (growth + 1.0 / growth);
     }
     return sum * half * stretch;
 }
 
 /// The airlight integral: int p(cos) exp(-extinction (t + d)) / (d^2 + radius^2) dt from `from_along` to `to_along`
 /// metres along a view ray, in 1/(m sr), with d the distance to the light. `extinction` in 1/m, not negative; `g`: mean cosine.
-/// A fixed rule of 16 points: within 1e-3 for |g| <= 0.9 on rays that pass the light at twice its radius or farther;
+/// A fixed rule of 16 points: within 1e-3 for g from -0.75 to 0.9 on rays that pass the light at twice its radius or farther;
 /// nearer, where the softening is a matter of taste, within 5e-2. Stretches below a thousandth of the distance to the
 /// light lose figures in proportion.
 fn airlight(ray: LocalRay, extinction: f32, g: f32, from_along: f32, to_along: f32) -> f32 {
@@ -286,17 +290,14 @@ fn airlight(ray: LocalRay, extinction: f32, g: f32, from_along: f32, to_along: f
     let end = max(min(to_along - ray.closest, deepest), start);
 
     let peak = clamp((1.0 - abs(g)) / sqrt(max(abs(g), 0.01)), 1e-3, 10.0);
-    var sum = 0.0;
-    if start < min(end, 0.0) {
-        sum = airlight_side(ray, -1.0, max(-end, 0.0), -start, select(10.0, peak, g > 0.0), extinction, g);
-    }
-    if end > max(start, 0.0) {
-        // Beyond the light the air dims over angles of about the optical depth of the closest distance.
-        let dims = max(extinction * ray.softened, 0.01);
-        let stretch = min(dims, select(10.0, peak, g < 0.0));
-        sum += airlight_side(ray, 1.0, max(start, 0.0), end, stretch, extinction, g);
-    }
-    return sum / ray.softened;
+    // Both sides always, an empty one for nothing: a branch here, or a loop of varying length, ends lavapipe of Mesa 22.3.
+    let before_light = airlight_side(
+        ray, -1.0, max(-end, 0.0), max(-start, 0.0), select(10.0, peak, g > 0.0), extinction, g
+    );
+    // Beyond the light the air dims over angles of about the optical depth of the closest distance.
+    let stretch = min(max(extinction * ray.softened, 0.01), select(10.0, peak, g < 0.0));
+    let beyond_light = airlight_side(ray, 1.0, max(start, 0.0), max(end, 0.0), stretch, extinction, g);
+    return (before_light + beyond_light) / ray.softened;
 }
 
 /// Radiance scattered into a view ray. `intensity`: linear RGB radiant intensity of the light; `lit`: mean of visibility times

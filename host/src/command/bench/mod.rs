@@ -2,6 +2,7 @@
 //! `airlight bench`: ratios against baselines, interleaved in one run, with the error of both sides.
 
 pub mod baselines;
+mod choices;
 mod resolution;
 mod scattering;
 mod tables;

@@ -5,7 +5,9 @@ use super::{Quality, Row, Work, figure, interleaved, ratio, time};
 use crate::command::CommandError;
 use crate::command::progress;
 use crate::core::Raster;
-use crate::scattering::{Along, BasisFormat, March, Prefiltered, Settings, Weighting, epipole_near_picture};
+use crate::scattering::{
+    Along, BasisFormat, Filtering, March, Prefiltered, Settings, Weighting, epipole_near_picture,
+};
 use crate::scenes::{self, Scene};
 use crate::{Gpu, Shaders, Stage, Texture};
 use airlight_tests::error;
@@ -135,7 +137,7 @@ pub fn run(gpu: &Gpu, record: Work<'_>) -> Result<(), CommandError> {
 
 /// Every named figure.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {
-    let bar = progress::bar(8, quiet);
+    let bar = progress::bar(9, quiet);
     let mut rows = Vec::new();
     bar.set_message("march over prefiltered, foliage 1920x1080");
     rows.extend(march_over_prefiltered(gpu, shaders)?);
@@ -152,6 +154,9 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
     }
     bar.set_message("reduced resolution and equal error, foliage 1920x1080");
     rows.extend(super::resolution::rows(gpu, shaders)?);
+    bar.inc(1);
+    bar.set_message("reference ray, epipole, projective rows");
+    rows.extend(super::choices::rows(gpu, shaders)?);
     bar.inc(1);
     bar.set_message("evaluation of torus against tree");
     rows.push(scene_independence(gpu, shaders)?);
@@ -170,6 +175,10 @@ fn march_over_prefiltered(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, Comm
     let settings = Settings { weighting: Weighting::Average, epipole_march, ..Settings::tuned(gpu) };
     let prefiltered = Prefiltered::new(gpu, shaders, settings, SIZE)?;
     let bound = prefiltered.bind(gpu, &stage.inputs())?;
+    // Smooth across rows, which no march is.
+    let linear = Settings { filtering: Filtering::Linear, ..settings };
+    let linear = Prefiltered::new(gpu, shaders, linear, SIZE)?;
+    let linear_bound = linear.bind(gpu, &stage.inputs())?;
     let fixed = Along::RowSteps { map: &prefiltered.rectification, steps: settings.map[0] };
     let texels = Along::Rows(&prefiltered.rectification);
     let fixed_march = March::new(gpu, shaders, &fixed, Weighting::Average, SIZE)?;
@@ -186,29 +195,30 @@ fn march_over_prefiltered(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, Comm
             &|encoder| prefiltered.record_rectification(encoder, &bound),
             &|encoder| prefiltered.record_filter(encoder, &bound),
             &|encoder| prefiltered.record_evaluation(encoder, &bound),
+            &|encoder| linear.record(encoder, &linear_bound),
+            &|encoder| linear.record_evaluation(encoder, &linear_bound),
         ],
         7,
     )?;
     let truth = Truth::new(gpu, &stage, &prefiltered.rectification.rectified)?;
     let exact = truth.rectified.average();
     let error = |texture| truth.visibility(gpu, texture).map(|values| error::mean_absolute(&values, &exact));
-    let quality = |baseline| -> Result<_, CommandError> {
-        Ok(Some(Quality {
-            metric: VISIBILITY,
-            error: error(&prefiltered.scattered)?,
-            baseline_error: error(baseline)?,
-        }))
+    let quality = |own, baseline| -> Result<_, CommandError> {
+        Ok(Some(Quality { metric: VISIBILITY, error: error(own)?, baseline_error: error(baseline)? }))
     };
-    let fixed_quality = quality(&fixed_march.scattered)?;
-    let texel_quality = quality(&texel_march.scattered)?;
+    let fixed_quality = quality(&prefiltered.scattered, &fixed_march.scattered)?;
+    let texel_quality = quality(&prefiltered.scattered, &texel_march.scattered)?;
+    let linear_quality = quality(&linear.scattered, &fixed_march.scattered)?;
     Ok(vec![
         ratio(SYSTEM, "march_over_prefiltered", &samples[1], &samples[0], "higher", fixed_quality),
         ratio(SYSTEM, "march_texels_over_prefiltered", &samples[2], &samples[0], "higher", texel_quality),
+        ratio(SYSTEM, "march_over_prefiltered_linear", &samples[1], &samples[6], "higher", linear_quality),
         time(SYSTEM, "prefiltered", samples[0].clone()),
         time(SYSTEM, "march", samples[1].clone()),
         time(SYSTEM, "rectification", samples[3].clone()),
         time(SYSTEM, "filter", samples[4].clone()),
         time(SYSTEM, "evaluation", samples[5].clone()),
+        time(SYSTEM, "evaluation_linear", samples[7].clone()),
         figure(SYSTEM, "memory", prefiltered.memory() as f64 / 1e6, "MB"),
     ])
 }
