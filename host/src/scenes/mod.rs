@@ -154,9 +154,10 @@ fn sun() -> Result<Scene, SceneError> {
     Ok(Scene {
         name: "sun",
         title: "The sun behind a tree",
-        view: view(Vec3::new(0.9, 0.8, 6.6), Vec3::new(0.15, 3.1, -0.6), 48.0, 0.1, 30.0),
+        view: view(Vec3::new(0.9, 0.8, 6.6), Vec3::new(0.0, 2.75, -0.6), 50.0, 0.1, 30.0),
         light: Lighting::directional(direction_from_angles(184.0, 25.0), Vec3::new(8.4, 6.0, 3.5)),
-        exposure: 0.35,
+        medium: Medium::new(0.02, Vec3::splat(0.96), 0.75, 40.0)?,
+        exposure: 0.3,
         ..foliage()?
     })
 }
@@ -228,7 +229,7 @@ fn plane_scene() -> Result<Scene, SceneError> {
         cascades: None,
         sky: Sky::new(Vec3::splat(0.05), Vec3::splat(0.1), Vec3::splat(0.03)),
         medium: Medium::new(0.08, Vec3::splat(0.95), 0.0, 20.0)?,
-        exposure: 1.0,
+        exposure: 0.4,
     })
 }
 

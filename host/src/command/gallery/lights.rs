@@ -6,11 +6,12 @@ use super::studio::Studio;
 use crate::command::CommandError;
 
 /// Scenes, and what each is there for.
-const KINDS: [(&str, &str); 7] = [
+const KINDS: [(&str, &str); 8] = [
     ("foliage", "directional light"),
     ("spot", "spot"),
     ("slide", "spot with a light texture"),
     ("lamp", "point light"),
+    ("sun", "directional light in the picture"),
     ("glass", "directional light with a light texture"),
     ("orthographic", "directional light, orthographic camera"),
     ("cascades", "directional light in four cascades"),

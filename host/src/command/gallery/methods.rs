@@ -16,7 +16,7 @@ const COLUMNS: usize = 4;
 const SERIES: [(u32, bool); 8] =
     [(4, false), (8, false), (16, false), (32, false), (8, true), (16, true), (32, true), (64, true)];
 /// Steps at which a march is timed to find how many fit into a given time.
-const TIMED_STEPS: [u32; 2] = [16, 64];
+const TIMED_STEPS: [u32; 2] = [16, 128];
 
 /// A method's picture.
 struct Entry {
@@ -134,12 +134,14 @@ impl Rows<'_> {
     /// Marches with as many steps as fit into `budget` milliseconds, at most `most`.
     fn same_time(&self, budget: f64, most: u32) -> Result<Vec<Entry>, CommandError> {
         let march = |steps, jitter, file| self.march(&Along::RowSteps { map: self.map, steps }, jitter, file);
-        // A straight line through two times is good enough.
+        // A straight line through two times, corrected once.
         let [few, many] = TIMED_STEPS;
         let few_time = march(few, Jitter::None, "")?.time;
-        let step_time = (march(many, Jitter::None, "")?.time - few_time) / f64::from(many - few);
-        let fitting = f64::from(few) + (budget - few_time) / step_time.max(1e-6);
-        let steps = fitting.clamp(1.0, f64::from(most)) as u32;
+        let step_time = ((march(many, Jitter::None, "")?.time - few_time) / f64::from(many - few)).max(1e-6);
+        let clamped = |steps: f64| steps.clamp(1.0, f64::from(most));
+        let guess = clamped(f64::from(few) + (budget - few_time) / step_time);
+        let over = march(guess as u32, Jitter::None, "")?.time - budget;
+        let steps = clamped(guess - over * guess / (over + budget - self.time).max(1e-6)) as u32;
         let kinds = [
             (Jitter::None, "same_time", "March of"),
             (Jitter::Gradient, "same_time_gradient", "With gradient jitter,"),

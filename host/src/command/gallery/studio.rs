@@ -143,9 +143,9 @@ impl Studio {
         Ok(self.tonemap.run(&self.gpu, radiance, exposure)?)
     }
 
-    /// Least milliseconds of three runs after the first one, which compiles; long work runs twice in all.
+    /// Least milliseconds of five runs after the first one, which compiles; long work runs twice in all.
     pub fn time(&self, work: Work<'_>) -> Result<f64, CommandError> {
-        let runs = if milliseconds(&self.gpu, work)? > 500.0 { 1 } else { 3 };
+        let runs = if milliseconds(&self.gpu, work)? > 500.0 { 1 } else { 5 };
         let mut least = f64::INFINITY;
         for _ in 0..runs {
             least = least.min(milliseconds(&self.gpu, work)?);
