@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A scene for every kind of light, camera and shadow map.
 
-use super::parts::{Lancet, block, column, lancet_height, perforated_ball, wall_with_lancets};
+use super::parts::{Hole, Lancet, block, column, lancet_height, perforated_ball, wall_with_lancets};
 use super::{BUNNY, SUZANNE, Scene, SceneError, placed, standing, view};
 use crate::core::{Cascades, DepthRange, OrthographicView, Sky, direction_from_angles};
 use crate::data::{
@@ -76,6 +76,40 @@ pub fn spot() -> Result<Scene, SceneError> {
     })
 }
 
+/// The same hall with a slide in the spot.
+pub fn slide() -> Result<Scene, SceneError> {
+    Ok(Scene {
+        name: "slide",
+        title: "A slide in a spot",
+        light_texture: Some(rose([1024, 1024])),
+        ..spot()?
+    })
+}
+
+/// A rose window: rings of petals in two hues between dark leads.
+fn rose(size: [u32; 2]) -> LightImage {
+    LightImage::from_function(size, |uv| {
+        let at = 2.0 * uv - Vec2::ONE;
+        let (radius, turn) = (at.length(), at.y.atan2(at.x) / TAU + 0.5);
+        let (ring, petals) = match radius {
+            r if r < 0.16 => (0, 1.0),
+            r if r < 0.46 => (1, 8.0),
+            r if r < 0.76 => (2, 16.0),
+            _ => (3, 32.0),
+        };
+        let across = (turn * petals).fract().min(1.0 - (turn * petals).fract()) / petals * TAU * radius;
+        let edges = [0.16, 0.46, 0.76];
+        let lead = edges.iter().any(|edge| (radius - edge).abs() < 0.02) || (ring > 0 && across < 0.015);
+        let hues = [
+            [Vec3::new(1.0, 0.85, 0.4), Vec3::new(1.0, 0.85, 0.4)],
+            [Vec3::new(1.0, 0.12, 0.05), Vec3::new(1.0, 0.5, 0.06)],
+            [Vec3::new(0.06, 0.25, 1.0), Vec3::new(0.1, 0.75, 0.9)],
+            [Vec3::new(0.5, 0.08, 0.9), Vec3::new(0.9, 0.15, 0.5)],
+        ];
+        if lead { Vec3::ZERO } else { hues[ring][(turn * petals) as usize % 2] }
+    })
+}
+
 /// A pierced lantern between columns: rays to all sides, and dots of light on everything around.
 pub fn lamp() -> Result<Scene, SceneError> {
     let mut mesh = Mesh::default();
@@ -98,19 +132,17 @@ pub fn lamp() -> Result<Scene, SceneError> {
     let centre = Vec3::new(0.0, 2.35, -0.5);
     let brass = Vec3::new(0.35, 0.22, 0.09);
     // Round holes in staggered rows, fewer towards the poles, which are closed.
-    const AROUND: u32 = 384;
-    const DOWN: u32 = 192;
-    let open = |around: u32, down: u32| {
-        let polar = (down as f32 + 0.5) / DOWN as f32 * PI;
-        let row = (polar / PI * 9.0).floor();
+    let hole = |around: f32, down: f32| {
+        let row = (down / PI * 9.0).floor().clamp(0.0, 8.0);
         let middle = (row + 0.5) / 9.0 * PI;
         let count = (16.0 * middle.sin()).round();
-        let place = (around as f32 + 0.5) / AROUND as f32 * count + 0.5 * (row % 2.0);
+        let place = (around / TAU).rem_euclid(1.0) * count + 0.5 * (row % 2.0);
         let across = (place - place.floor() - 0.5) * TAU / count * middle.sin();
         let size = if row % 2.0 == 0.0 { 0.14 } else { 0.105 };
-        (1.0..8.0).contains(&row) && Vec2::new(across, polar - middle).length() < size
+        let open = (1.0..8.0).contains(&row);
+        Hole { away: Vec2::new(across, down - middle), size: if open { size } else { 0.0 } }
     };
-    let ball = perforated_ball(0.42, AROUND, DOWN, brass, open);
+    let ball = perforated_ball(0.42, 384, 192, brass, hole);
     mesh.append(&ball.transformed(Mat4::from_translation(centre)));
     for (y, radius) in [(0.39, 0.16), (-0.39, 0.16)] {
         let ring = torus(radius, 0.02, 64, 12).with_albedo(brass);
@@ -252,6 +284,7 @@ fn pane(window: usize, lancet: &Lancet, at: Vec2) -> Vec3 {
 /// A hall cut open by the near plane, as architects draw a section: light falls through its roof onto a head.
 pub fn orthographic() -> Result<Scene, SceneError> {
     let plaster = Vec3::new(0.50, 0.46, 0.41);
+    let slate = Vec3::new(0.05, 0.048, 0.05);
     let (half, depth, height) = (8.0, 4.0, 5.6);
     let mut mesh = floor(-half, half, -depth, depth, 0.8, [Vec3::splat(0.34), Vec3::new(0.17, 0.16, 0.155)]);
     for z in [-depth, depth] {
@@ -266,7 +299,7 @@ pub fn orthographic() -> Result<Scene, SceneError> {
     let lights = [-5.2, -2.6, 0.0, 2.6, 5.2];
     let (wide, rows) = (0.62, [-1.9, 0.5]);
     let roof = |x: [f32; 2], z: [f32; 2]| {
-        block(Vec3::new(x[0], height, z[0]), Vec3::new(x[1], height + 0.35, z[1]), plaster)
+        block(Vec3::new(x[0], height, z[0]), Vec3::new(x[1], height + 0.35, z[1]), slate)
     };
     let mut from = -half - 0.4;
     for x in lights {
@@ -299,9 +332,9 @@ pub fn orthographic() -> Result<Scene, SceneError> {
         title: "A hall in section, without perspective",
         mesh,
         view: OrthographicView {
-            eye: Vec3::new(3.4, 3.7, 12.0),
-            target: Vec3::new(0.0, 2.62, -1.0),
-            height: 5.5,
+            eye: Vec3::new(3.4, 4.0, 12.0),
+            target: Vec3::new(0.0, 2.95, -1.0),
+            height: 6.4,
             near: 11.0,
             far: 22.0,
             depth: DepthRange::Forward,
@@ -310,9 +343,9 @@ pub fn orthographic() -> Result<Scene, SceneError> {
         light: Lighting::directional(direction_from_angles(-112.0, 56.0), Vec3::new(30.0, 22.0, 13.0)),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.14, 0.19, 0.27), Vec3::new(0.17, 0.2, 0.26), Vec3::new(0.13, 0.11, 0.10)),
-        medium: Medium::new(0.09, Vec3::splat(0.95), 0.0, 40.0)?,
-        exposure: 0.75,
+        sky: Sky::new(Vec3::new(0.22, 0.29, 0.40), Vec3::new(0.26, 0.30, 0.38), Vec3::new(0.20, 0.17, 0.15)),
+        medium: Medium::new(0.075, Vec3::splat(0.95), 0.0, 40.0)?,
+        exposure: 0.9,
     })
 }
 

@@ -71,8 +71,19 @@ pub enum SceneError {
 }
 
 /// The names that [`scene`] knows.
-pub const SCENES: [&str; 9] =
-    ["foliage", "terrain", "torus", "plane", "spot", "lamp", "glass", "orthographic", "cascades"];
+pub const SCENES: [&str; 11] = [
+    "foliage",
+    "terrain",
+    "torus",
+    "plane",
+    "sun",
+    "spot",
+    "slide",
+    "lamp",
+    "glass",
+    "orthographic",
+    "cascades",
+];
 
 /// A scene by name; none if there is no such scene.
 ///
@@ -84,7 +95,9 @@ pub fn scene(name: &str) -> Result<Option<Scene>, SceneError> {
         "terrain" => suzanne_on_terrain()?,
         "torus" => torus_scene()?,
         "plane" => plane_scene()?,
+        "sun" => sun()?,
         "spot" => lights::spot()?,
+        "slide" => lights::slide()?,
         "lamp" => lights::lamp()?,
         "glass" => lights::glass()?,
         "orthographic" => lights::orthographic()?,
@@ -133,6 +146,19 @@ fn foliage() -> Result<Scene, SceneError> {
         sky: Sky::new(Vec3::new(0.05, 0.10, 0.20), Vec3::new(0.17, 0.19, 0.22), Vec3::new(0.03, 0.03, 0.025)),
         medium: Medium::new(0.034, Vec3::splat(0.96), 0.6, 40.0)?,
         exposure: 0.62,
+    })
+}
+
+/// The same from below the crown, with the sun behind it.
+fn sun() -> Result<Scene, SceneError> {
+    Ok(Scene {
+        name: "sun",
+        title: "The sun behind a tree",
+        view: view(Vec3::new(0.9, 0.8, 6.6), Vec3::new(0.0, 2.75, -0.6), 50.0, 0.1, 30.0),
+        light: Lighting::directional(direction_from_angles(184.0, 25.0), Vec3::new(8.4, 6.0, 3.5)),
+        medium: Medium::new(0.02, Vec3::splat(0.96), 0.75, 40.0)?,
+        exposure: 0.3,
+        ..foliage()?
     })
 }
 
@@ -203,7 +229,7 @@ fn plane_scene() -> Result<Scene, SceneError> {
         cascades: None,
         sky: Sky::new(Vec3::splat(0.05), Vec3::splat(0.1), Vec3::splat(0.03)),
         medium: Medium::new(0.08, Vec3::splat(0.95), 0.0, 20.0)?,
-        exposure: 1.0,
+        exposure: 0.4,
     })
 }
 

@@ -3,7 +3,7 @@
 
 use crate::data::{DEFAULT_ALBEDO, Mesh, cuboid, sphere};
 use glam::{Mat4, Vec2, Vec3};
-use std::f32::consts::TAU;
+use std::f32::consts::{PI, TAU};
 
 /// A block from its least to its greatest corner.
 pub fn block(min: Vec3, max: Vec3, albedo: Vec3) -> Mesh {
@@ -133,20 +133,49 @@ fn quad(mesh: &mut Mesh, corners: [Vec3; 4], normal: Vec3) {
     mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
 }
 
-/// A hollow ball around the origin whose cells are open where `open` says so, for the number of\n/// the cell around and down.
+/// A round hole near a place on a ball.
+pub struct Hole {
+    /// The place as seen from the middle of the hole, around and down, radians.
+    pub away: Vec2,
+    /// Radius of the hole, radians; 0 where there is none.
+    pub size: f32,
+}
+
+/// A hollow ball around the origin with round holes. `hole`: the one nearest to a place, by its azimuth from +z towards
+/// +x and its angle to +y, radians.
 pub fn perforated_ball(
     radius: f32,
     segments: u32,
     rings: u32,
     albedo: Vec3,
-    open: impl Fn(u32, u32) -> bool,
+    hole: impl Fn(f32, f32) -> Hole,
 ) -> Mesh {
     let mut mesh = sphere(radius, segments, rings).with_albedo(albedo);
-    // Two triangles a cell, row after row.
-    let cells = mesh.indices.chunks_exact(6).enumerate();
-    mesh.indices = cells
-        .filter(|(cell, _)| !open(*cell as u32 % segments, *cell as u32 / segments))
-        .flat_map(|(_, corners)| corners.to_vec())
+    let angles = |point: Vec3| (point.x.atan2(point.z), (point.y / radius).clamp(-1.0, 1.0).acos());
+    // Two triangles a cell, row after row; a cell is open where its middle is.
+    mesh.indices = mesh
+        .indices
+        .chunks_exact(6)
+        .filter(|corners| {
+            let middle: Vec3 = corners.iter().map(|corner| mesh.positions[*corner as usize]).sum();
+            let (around, down) = angles(middle.normalize_or_zero() * radius);
+            let Hole { away, size } = hole(around, down);
+            away.length() >= size
+        })
+        .flat_map(|corners| corners.to_vec())
         .collect();
+    // Corners next to the rim of a hole move onto it.
+    let cell = PI / rings as f32;
+    for (position, normal) in mesh.positions.iter_mut().zip(&mut mesh.normals) {
+        let (around, down) = angles(*position);
+        let Hole { away, size } = hole(around, down);
+        let distance = away.length();
+        if size > 0.0 && (distance - size).abs() < 0.75 * cell {
+            let shift = away * (size / distance - 1.0);
+            let (around, down) = (around + shift.x / down.sin().max(0.1), down + shift.y);
+            *normal = Vec3::new(down.sin() * around.sin(), down.cos(), down.sin() * around.cos());
+            *position = *normal * radius;
+        }
+    }
     mesh
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The contact sheet: all pictures with what made them and how long it took.
+//! The page: all pictures with what made them and how long it took.
 
-use super::Plate;
+use super::album::Section;
 use crate::command::CommandError;
-use crate::core::View;
 use crate::formats::write_whole;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -22,12 +21,12 @@ table{border-collapse:collapse;font-size:13px;margin-top:12px}td{padding:2px 18p
 ";
 
 /// Writes the page.
-pub fn write(path: &Path, adapter: &str, size: [u32; 2], plates: &[Plate]) -> Result<(), CommandError> {
-    let page = render(adapter, size, plates).map_err(CommandError::failure)?;
+pub fn write(path: &Path, adapter: &str, size: [u32; 2], sections: &[Section]) -> Result<(), CommandError> {
+    let page = render(adapter, size, sections).map_err(CommandError::failure)?;
     write_whole(path, |writer| writer.write_all(page.as_bytes())).map_err(CommandError::failure)
 }
 
-fn render(adapter: &str, [width, height]: [u32; 2], plates: &[Plate]) -> Result<String, std::fmt::Error> {
+fn render(adapter: &str, [width, height]: [u32; 2], sections: &[Section]) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     writeln!(
         page,
@@ -35,54 +34,34 @@ fn render(adapter: &str, [width, height]: [u32; 2], plates: &[Plate]) -> Result<
     )?;
     writeln!(page, "<style>{STYLE}</style><main><h1>Airlight gallery</h1>")?;
     writeln!(page, "<p>{width}x{height} pixels on {}</p>", escape(adapter))?;
-    for plate in plates {
-        let Plate { scene, settings, pictures, times } = plate;
-        let folder = format!("scattering/{}", scene.name);
-        writeln!(page, "<section><h2>{}</h2><p>{folder}: {}</p>", escape(scene.title), parameters(plate))?;
+    for section in sections {
+        let Section { folder, title, about, columns, pictures, facts } = section;
+        writeln!(page, "<section><h2>{}</h2><p>{folder}: {}</p>", escape(title), escape(about))?;
         for (index, (file, caption)) in pictures.iter().enumerate() {
             let class = if index == 0 { " class=\"first\"" } else { "" };
+            let caption = escape(caption);
             writeln!(
                 page,
                 "<figure{class}><a href=\"{folder}/{file}\"><img src=\"{folder}/{file}\" alt=\"{caption}\"></a>\
                  <figcaption>{caption}</figcaption></figure>"
             )?;
             if index == 0 {
-                page.push_str("<div class=\"sheet\">\n");
+                let style = columns
+                    .map(|columns| format!(" style=\"grid-template-columns:repeat({columns},1fr)\""))
+                    .unwrap_or_default();
+                writeln!(page, "<div class=\"sheet\"{style}>")?;
             }
         }
         page.push_str("</div><table>\n");
-        for (step, milliseconds) in times {
-            writeln!(page, "<tr><td>{step}</td><td>{milliseconds:.1} ms</td></tr>")?;
+        for (what, value) in facts {
+            writeln!(page, "<tr><td>{}</td><td>{}</td></tr>", escape(what), escape(value))?;
         }
-        let [columns, rows] = settings.map;
-        writeln!(page, "<tr><td>rectified map</td><td>{columns}x{rows}, {} bases</td></tr>", settings.bases)?;
         page.push_str("</table></section>\n");
     }
     page.push_str("</main></html>\n");
     Ok(page)
 }
 
-fn parameters(plate: &Plate) -> String {
-    let medium = &plate.scene.medium;
-    let view = &plate.scene.view;
-    format!(
-        "{} triangles, extinction {} /m, albedo {}, g {}, {}, {}",
-        plate.scene.mesh.triangle_count(),
-        medium.extinction,
-        medium.albedo.x,
-        medium.g,
-        match view {
-            View::Perspective(view) => {
-                format!("eye {}, target {}, field of view {}°", view.eye, view.target, view.field_of_view)
-            }
-            View::Orthographic(view) => {
-                format!("eye {}, target {}, height {} m, orthographic", view.eye, view.target, view.height)
-            }
-        },
-        plate.scene.light,
-    )
-}
-
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

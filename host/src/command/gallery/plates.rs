@@ -14,26 +14,40 @@ pub struct Grey {
     pub pixels: Vec<u8>,
 }
 
-/// |a - b| times `factor`, as radiance.
-pub fn difference(gpu: &Gpu, a: &Texture, b: &Texture, factor: f32) -> Result<Texture, CommandError> {
+/// |a - b| times `factor`, as radiance; `b` as it is read back.
+pub fn difference(gpu: &Gpu, a: &Texture, b: &[f32], factor: f32) -> Result<Texture, CommandError> {
     let [width, height, _] = a.size();
     let values: Vec<f32> =
-        a.read(gpu)?.iter().zip(b.read(gpu)?).map(|(a, b)| ((a - b).abs() * factor).min(6e4)).collect();
+        a.read(gpu)?.iter().zip(b).map(|(a, b)| ((a - b).abs() * factor).min(6e4)).collect();
     let texture = Texture::storage(gpu, [width, height], a.raw.format());
     texture.write(gpu, &values)?;
     Ok(texture)
 }
 
-/// A map of depths, stretched over the range that occurs; texels without a blocker are white.
+/// Maps of depths, stretched over the range that occurs; texels without a blocker are white. Layers are side by
+/// side, three to a row.
 pub fn depth(gpu: &Gpu, map: &Texture) -> Result<Grey, CommandError> {
-    let [width, height, _] = map.size();
-    let values = map.read(gpu)?;
+    let [width, height, layers] = map.size();
+    let (values, [width, height]) = side_by_side(&map.read(gpu)?, [width, height, layers]);
     let blockers = || values.iter().copied().filter(|value| *value < 1.0);
     let least = blockers().fold(1.0, f32::min);
     let greatest = blockers().fold(0.0, f32::max).max(least + 1e-6);
     let grey =
         |value: f32| if value >= 1.0 { 255 } else { (235.0 * (value - least) / (greatest - least)) as u8 };
     Ok(halved(width, height, values.into_iter().map(grey).collect()))
+}
+
+/// The values of a texture of one channel with its layers side by side, three to a row; empty places are 1.
+fn side_by_side(values: &[f32], [width, height, layers]: [u32; 3]) -> (Vec<f32>, [u32; 2]) {
+    let columns = layers.min(3);
+    let size = [width * columns, height * layers.div_ceil(columns)];
+    let mut placed = vec![1.0; size[0] as usize * size[1] as usize];
+    for (line, row) in values.chunks(width as usize).enumerate() {
+        let (layer, y) = (line as u32 / height, line as u32 % height);
+        let start = (layer / columns * height + y) * size[0] + layer % columns * width;
+        placed[start as usize..][..row.len()].copy_from_slice(row);
+    }
+    (placed, size)
 }
 
 /// Filtered bases, the first of each of eight layers, in two rows of four.
