@@ -18,7 +18,7 @@ use airlight::scattering::{
     projective_rows,
 };
 use airlight_tests::error::relative_rmse;
-use command::{files, refuses, succeeds};
+use command::{airlight_with, files, refuses, succeeds};
 use glam::Vec3;
 use gpu::{gpu, shaders};
 use std::collections::BTreeMap;
@@ -384,6 +384,11 @@ fn flags_that_cannot_be_meant_are_refused() {
         let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr", "--size", "32x24"];
         arguments.extend(["--map", "64x64"].into_iter().chain(flags.split(' ')));
         refuses(at.path(), &arguments, code, parts);
+        // Before any GPU work: where there is no adapter it is said as well.
+        let nowhere = at.path().join("no-driver.json").display().to_string();
+        let none = [("VK_DRIVER_FILES", nowhere.as_str()), ("VK_ICD_FILENAMES", nowhere.as_str())];
+        let ended = airlight_with(at.path(), &arguments, &none);
+        assert!(ended.code == code && !ended.err.contains("no GPU adapter"), "{flags}: {}", ended.err);
     };
     let bad = |flags: &str, parts: &[&str]| refused(flags, 2, parts);
     // Values.
