@@ -61,11 +61,11 @@ pub fn spot() -> Result<Scene, SceneError> {
         mesh,
         view: view(Vec3::new(2.3, 1.5, 4.4), Vec3::new(-1.25, 1.75, -1.6), 49.0, 0.1, 16.0),
         light: Lighting::Spot {
-            position: Vec3::new(-8.8, 5.1, -0.75),
+            position: Vec3::new(-14.3, 7.6, -0.43),
             target: Vec3::new(0.5, 0.9, -1.3),
-            outer_degrees: 27.0,
-            inner_degrees: 20.0,
-            intensity: Vec3::new(2100.0, 1560.0, 950.0),
+            outer_degrees: 13.0,
+            inner_degrees: 9.5,
+            intensity: Vec3::new(8200.0, 6100.0, 3700.0),
             radius: 0.1,
         },
         light_texture: None,
@@ -82,6 +82,7 @@ pub fn slide() -> Result<Scene, SceneError> {
         name: "slide",
         title: "A slide in a spot",
         light_texture: Some(rose([1024, 1024])),
+        exposure: 0.95,
         ..spot()?
     })
 }

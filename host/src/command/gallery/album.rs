@@ -8,7 +8,7 @@ use image::imageops::{FilterType, replace, resize};
 use std::path::{Path, PathBuf};
 
 /// Width of a picture in a contact sheet, pixels.
-const TILE: u32 = 480;
+const TILE: u32 = 476;
 /// Pixels between the pictures of a contact sheet.
 const GAP: u32 = 4;
 

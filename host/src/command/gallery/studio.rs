@@ -76,7 +76,9 @@ impl Studio {
         let light = LightForm::of(&stage.light, &stage.inputs());
         let epipole_march =
             stage.light.kind != DIRECTIONAL || epipole_near_picture(&stage.camera, stage.light.direction);
-        let settings = Settings { light, epipole_march, ..self.settings() };
+        // Around a local light blockers are often closer to it in angle than the series resolves.
+        let depth_warp = light.local();
+        let settings = Settings { light, epipole_march, depth_warp, ..self.settings() };
         if stage.camera.projection == 0 {
             self.epipolar(stage, settings)
         } else {
