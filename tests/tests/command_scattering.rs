@@ -146,7 +146,7 @@ fn rows_of_a_directional_light_agree_with_the_march() {
     // The words of the uniform; the number of splits is an integer.
     assert_eq!((rows.0[0], rows.1[22].to_bits()), (24, 4));
     agrees(at, SUN, "--rectification epipolar", "epipolar (as asked for)", 0.03);
-    agrees(at, SUN, "--reference bisectrix --regions 3", "epipolar (--reference", 0.03);
+    agrees(at, SUN, "--reference optimum --regions 3", "epipolar (--reference", 0.03);
     let ahead = format!("{EYE} --light directional:185,12");
     // Rows around a light in the picture hold rays of all angles, which share their weights; plain means are exact.
     agrees(at, &ahead, "--half --bases 64", "epipolar (the light is in the picture", 0.06);
@@ -334,7 +334,7 @@ fn flags_of_the_filter_reach_it() {
     let run = |own: &str| Run::new(at.path(), "hall.obj", &format!("{setup}{own}")).buffers;
     let plain = run("");
     for (flag, changed) in [
-        (" --reference bisectrix", "slices"),
+        (" --reference optimum", "slices"),
         (" --regions 3", "bases"),
         (" --average", "bases"),
         (" --half", "bases"),
@@ -416,7 +416,7 @@ fn flags_that_cannot_be_meant_are_refused() {
     bad("--method march --jitter white", &["--jitter", "white", "blue-noise"]);
     bad("--method march --jitter gradient --frame -1", &["--frame", "-1"]);
     bad("--start nowhere", &["--start", "nowhere", "near-plane"]);
-    bad("--reference worst", &["--reference", "worst", "bisectrix"]);
+    bad("--reference worst", &["--reference", "worst", "optimum"]);
     bad("--radiance 20000,1,1", &["--radiance", "1e4"]);
     bad("--light point:0,3,0 --radiance 1e9,1,1", &["--radiance", "1e8"]);
     refused("--light-texture none.png", 1, &["--light-texture", "none.png"]);
@@ -432,7 +432,7 @@ fn flags_that_cannot_be_meant_are_refused() {
     bad(&format!("{point} --light-texture glass.png"), &["--light-texture", "spot"]);
     bad(&format!("{spot} --cascades 2"), &["--cascades", "leave them out"]);
     bad(&format!("{point} --cascades 2"), &["--cascades", "leave them out"]);
-    for flag in ["--rectification projective", "--splits 2", "--regions 2", "--reference bisectrix"] {
+    for flag in ["--rectification projective", "--splits 2", "--regions 2", "--reference optimum"] {
         bad(&format!("--method march {flag}"), &[flag.split(' ').next().unwrap(), "--method fourier"]);
     }
     bad("--method march --start near-plane", &["--start", "--method fourier"]);
@@ -445,17 +445,17 @@ fn flags_that_cannot_be_meant_are_refused() {
         bad(&format!("{light} --regions 2"), &["--regions", "leave it out"]);
         bad(&format!("{light} --start near-plane"), &["--start", "leave it out"]);
         bad(&format!("{light} --splits 2"), &["--splits", "leave it out"]);
-        bad(&format!("{light} --reference bisectrix"), &["--reference", "leave it out"]);
+        bad(&format!("{light} --reference optimum"), &["--reference", "leave it out"]);
     }
     bad("--light-texture glass.png --rectification projective", &["--rectification", "take auto"]);
     bad("--light-texture glass.png --regions 2", &["--regions", "leave it out"]);
     bad("--light-texture glass.png --start near-plane", &["--start", "leave it out"]);
     bad("--cascades 2 --rectification projective", &["--rectification", "take auto"]);
     bad("--rectification epipolar --splits 2", &["--splits", "leave it out"]);
-    bad("--rectification projective --reference bisectrix", &["--reference", "leave it out"]);
+    bad("--rectification projective --reference optimum", &["--reference", "leave it out"]);
     bad(&format!("{orthographic} --rectification epipolar"), &["--rectification", "take auto"]);
     bad(&format!("{orthographic} --splits 2"), &["--splits", "leave it out"]);
-    bad(&format!("{orthographic} --reference bisectrix"), &["--reference", "leave it out"]);
+    bad(&format!("{orthographic} --reference optimum"), &["--reference", "leave it out"]);
     // What only camera and light together say.
     let ahead = format!("{EYE} --light directional:185,12 --rectification projective");
     bad(&ahead, &["--rectification", "`projective`", "in the picture", "auto"]);

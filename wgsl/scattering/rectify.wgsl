@@ -64,7 +64,7 @@ struct Slice {
     angle_max: f32,
     /// Radius in metres at the right end of its row.
     radius_max: f32,
-    /// k of the reference ray: sine of its angle to the light (Eq. 4.12).
+    /// k of the reference ray, the bisectrix: sine of its angle to the light.
     reference: f32,
 }
 
@@ -196,7 +196,7 @@ fn slice_bounds(camera: Camera, frame: Frame, azimuth: f32, distance_limit: f32)
         far_radius(far, limit, along_light, along_radius, angle_min),
         far_radius(far, limit, along_light, along_radius, angle_max)
     );
-    let reference = reference_optimum(angle_min, angle_max);
+    let reference = reference_bisectrix(angle_min, angle_max);
     return Slice(angle_min, angle_max, clamp(radius, 1e-6 * distance_limit, limit), reference);
 }
 

@@ -2,7 +2,7 @@
 // summary: The frame of the epipolar slices and the bounds of each, one thread a slice.
 // source: thesis 4.4.1 (bounds), 4.3.2 Eq. 4.12 (reference ray).
 // definition LOCAL: a spot or point light; its slices are bounded by light angles.
-// definition BISECTRIX: the reference ray is the bisectrix instead of the optimum of Eq. 4.12.
+// definition OPTIMUM: the reference ray is the optimum of Eq. 4.12 instead of the bisectrix, which errs less on pictures.
 // binding camera: the camera, perspective.
 // binding light: the light, directional without LOCAL.
 // binding medium: the medium; its distance limit bounds the slices.
@@ -15,7 +15,7 @@
     place_of_light, distance_to_light, local_slice_bounds, local_slice_texel
 }
 #import airlight::scattering::rectify::{
-    Frame, epipolar_frame, row_azimuth, slice_bounds, slice_texel, reference_bisectrix
+    Frame, epipolar_frame, row_azimuth, slice_bounds, slice_texel, reference_optimum
 }
 #import airlight::scattering::single_scatter::Medium
 
@@ -44,8 +44,8 @@ fn slices_main(@builtin(global_invocation_id) id: vec3<u32>) {
 #else
     let around = epipolar_frame(camera, light.direction, rows);
     var bounds = slice_bounds(camera, around, row_azimuth(around, f32(id.x)), medium.distance_limit);
-#ifdef BISECTRIX
-    bounds.reference = reference_bisectrix(bounds.angle_min, bounds.angle_max);
+#ifdef OPTIMUM
+    bounds.reference = reference_optimum(bounds.angle_min, bounds.angle_max);
 #endif
     textureStore(slices, vec2<u32>(id.x, 0u), slice_texel(bounds));
 #endif

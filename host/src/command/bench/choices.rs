@@ -74,9 +74,7 @@ fn reference_ray(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError>
 
 /// The light in the picture: nothing done about it, the depth warp of thesis 4.5, and the marched block.
 fn epipole(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
-    let mut scene = scene("foliage")?;
-    set_light(&mut scene, direction_from_angles(184.0, 20.0));
-    let stage = staged(gpu, shaders, &scene)?;
+    let stage = staged(gpu, shaders, &scene("sun")?)?;
     let mut rows = Vec::new();
     for (label, depth_warp, epipole_march) in
         [("nothing", false, false), ("depth_warp", true, false), ("march", false, true)]

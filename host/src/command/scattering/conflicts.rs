@@ -77,7 +77,7 @@ fn march(flags: &Options) -> Vec<Rule> {
         (march && flags.rectification != RectificationSpelling::Auto, "--rectification", NO_ROWS),
         (march && flags.splits.is_some(), "--splits", NO_ROWS),
         (march && flags.regions > 1, "--regions", NO_ROWS),
-        (march && flags.reference == ReferenceSpelling::Bisectrix, "--reference", NO_ROWS),
+        (march && flags.reference == ReferenceSpelling::Optimum, "--reference", NO_ROWS),
         (
             march && flags.camera == Projection::Perspective && flags.near_plane(),
             "--start",
@@ -101,7 +101,7 @@ fn rows(flags: &Options) -> Vec<Rule> {
     let orthographic = flags.camera == Projection::Orthographic;
     let projective = flags.rectification == RectificationSpelling::Projective;
     let epipolar = flags.rectification == RectificationSpelling::Epipolar;
-    let bisectrix = flags.reference == ReferenceSpelling::Bisectrix;
+    let optimum = flags.reference == ReferenceSpelling::Optimum;
     let weighted = flags.local() || flags.light_texture.is_some();
     let fourier = flags.method == MethodSpelling::Fourier;
     vec![
@@ -138,9 +138,9 @@ fn rows(flags: &Options) -> Vec<Rule> {
             "rows of an orthographic camera are not split: leave it out",
         ),
         (
-            bisectrix && (projective || orthographic || flags.local()),
+            optimum && (projective || orthographic || flags.local()),
             "--reference",
-            "`bisectrix` is for epipolar rows of a directional light: leave it out",
+            "`optimum` is for epipolar rows of a directional light: leave it out",
         ),
     ]
 }

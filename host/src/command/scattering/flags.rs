@@ -182,7 +182,7 @@ pub struct Options {
     #[arg(long, value_enum)]
     pub start: Option<StartSpelling>,
     /// The ray whose weights all rays of an epipolar row share.
-    #[arg(long, value_enum, default_value = "optimum")]
+    #[arg(long, value_enum, default_value = "bisectrix")]
     pub reference: ReferenceSpelling,
     /// How many pixels are evaluated; the others are interpolated.
     #[arg(long, value_enum, default_value = "full")]

@@ -110,7 +110,7 @@ fn automatic(
 ) -> Plan {
     let march = |reason: &str| Plan { rows: Rows::None, reason: format!("none, marched instead ({reason})") };
     let epipolar = |reason: &str| Plan { rows: Rows::Epipolar, reason: format!("epipolar ({reason})") };
-    if form.plain() && flags.reference == ReferenceSpelling::Optimum {
+    if form.plain() && flags.reference == ReferenceSpelling::Bisectrix {
         let mut rows = Vec::new();
         for camera in cameras {
             match choose(camera) {
@@ -137,6 +137,6 @@ fn automatic(
     } else if form.shadow_array {
         "cascades are resampled along them only"
     } else {
-        "--reference bisectrix is of these"
+        "--reference optimum is of these"
     })
 }

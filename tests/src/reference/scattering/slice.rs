@@ -48,10 +48,19 @@ impl Slice {
         self.theta_min + (self.theta_max - self.theta_min) * unit
     }
 
-    /// `k` of the reference ray of the prefiltering's weights, thesis Eq. 4.12.
+    /// `k` of the reference ray of the prefiltering's weights: the sine halfway between the angles of the rays that
+    /// cross a texel fastest and slowest, at least 0.1 (thesis 4.3.2, the bisectrix).
     #[must_use]
     pub fn k(&self) -> f64 {
-        (self.k_min * self.k_max).sqrt()
+        let right_angle = 0.5 * PI;
+        let fastest = right_angle.clamp(self.theta_min, self.theta_max);
+        let from_right_angle = |theta: f64| (theta - right_angle).abs();
+        let slowest = if from_right_angle(self.theta_min) > from_right_angle(self.theta_max) {
+            self.theta_min
+        } else {
+            self.theta_max
+        };
+        (0.5 * (fastest + slowest)).sin().max(0.1)
     }
 
     /// Radius that a texel of a row of `width` covers, metres.
