@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Files that the command reads and writes: arrays and pictures. Every file is written whole or not at all.
 
+mod array;
 mod npy;
 mod picture;
 mod whole;
 
-pub use npy::{Array, ArrayData, ArrayError, read_npy, write_npy};
+pub use array::{Array, ArrayData};
+pub use npy::{ArrayError, read_npy, write_npy};
 pub use picture::{write_exr, write_png};
 pub use whole::{WriteError, create_folder, write_whole};
