@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pipelines and layouts built from reflection; resources bound by name.
 
+mod bind;
+
+pub use bind::{Bound, Resource};
+
 use crate::gpu::{Gpu, GpuError};
-use crate::layout::{kind_text, layout_entry, mismatch};
-use crate::resource::{Buffer, Sampler, Texture};
+use crate::resource::Texture;
 use crate::shaders::Shaders;
-use airlight_validate::{Binding, Composed, Definitions, Reflection, Stage};
+use airlight_validate::{Binding, Composed, Definitions, Stage};
+use bind::layouts;
 use std::borrow::Cow;
 
 /// Why a pass could not be built or bound.
@@ -59,40 +63,6 @@ pub enum PassError {
         /// Those it has.
         expected: String,
     },
-}
-
-/// A resource to bind.
-#[derive(Clone, Copy)]
-pub enum Resource<'a> {
-    /// A uniform or storage buffer.
-    Buffer(&'a Buffer),
-    /// A sampled or storage texture.
-    Texture(&'a Texture),
-    /// A sampler.
-    Sampler(&'a Sampler),
-}
-
-impl<'a> From<&'a Buffer> for Resource<'a> {
-    fn from(buffer: &'a Buffer) -> Self {
-        Self::Buffer(buffer)
-    }
-}
-
-impl<'a> From<&'a Texture> for Resource<'a> {
-    fn from(texture: &'a Texture) -> Self {
-        Self::Texture(texture)
-    }
-}
-
-impl<'a> From<&'a Sampler> for Resource<'a> {
-    fn from(sampler: &'a Sampler) -> Self {
-        Self::Sampler(sampler)
-    }
-}
-
-/// Resources bound to a pass.
-pub struct Bound {
-    group: wgpu::BindGroup,
 }
 
 struct ComputeEntry {
@@ -261,80 +231,6 @@ impl Pass {
         Self::render(gpu, &shaders.compose_with(pass, definitions)?, &stages)
     }
 
-    /// What the pass expects, in one line.
-    pub fn expects(&self) -> String {
-        let list: Vec<_> = self
-            .bindings
-            .iter()
-            .map(|binding| format!("`{}` ({})", binding.name, kind_text(&binding.kind)))
-            .collect();
-        if list.is_empty() { "no bindings".to_owned() } else { list.join(", ") }
-    }
-
-    /// The bindings that the pass's entry points use.
-    pub fn bindings(&self) -> &[Binding] {
-        &self.bindings
-    }
-
-    /// Binds resources by name.
-    ///
-    /// # Errors
-    /// [`PassError`] for an unknown, missing or ill-typed name.
-    pub fn bind(&self, gpu: &Gpu, resources: &[(&str, Resource<'_>)]) -> Result<Bound, PassError> {
-        if let Some((name, _)) =
-            resources.iter().find(|(name, _)| !self.bindings.iter().any(|b| b.name == **name))
-        {
-            return Err(PassError::UnknownBinding {
-                pass: self.name.clone(),
-                name: (*name).to_owned(),
-                expected: self.expects(),
-            });
-        }
-        self.bind_known(gpu, resources)
-    }
-
-    /// Like [`Pass::bind`], but passes over names that this permutation does not have.
-    ///
-    /// # Errors
-    /// [`PassError`] for a missing or ill-typed name.
-    pub fn bind_known(&self, gpu: &Gpu, resources: &[(&str, Resource<'_>)]) -> Result<Bound, PassError> {
-        let mut entries = Vec::new();
-        for binding in &self.bindings {
-            let found = resources.iter().find(|(name, _)| *name == binding.name);
-            let Some((_, resource)) = found else {
-                return Err(PassError::MissingBinding {
-                    pass: self.name.clone(),
-                    name: binding.name.clone(),
-                    expected: self.expects(),
-                });
-            };
-            if let Some(given) = mismatch(&binding.kind, *resource) {
-                return Err(PassError::WrongResource {
-                    pass: self.name.clone(),
-                    name: binding.name.clone(),
-                    wanted: kind_text(&binding.kind),
-                    given,
-                });
-            }
-            entries.push(wgpu::BindGroupEntry {
-                binding: binding.binding,
-                resource: match resource {
-                    Resource::Buffer(buffer) => buffer.raw.as_entire_binding(),
-                    Resource::Texture(texture) => wgpu::BindingResource::TextureView(&texture.view),
-                    Resource::Sampler(sampler) => wgpu::BindingResource::Sampler(&sampler.raw),
-                },
-            });
-        }
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(&self.name),
-            layout: &self.layout,
-            entries: &entries,
-        });
-        caught(scope)?;
-        Ok(Bound { group })
-    }
-
     /// Records the only compute entry point over at least `size` invocations.
     pub fn dispatch(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound, size: [u32; 3]) {
         if let Pipelines::Compute(entries) = &self.pipelines
@@ -407,30 +303,6 @@ fn record(
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, &bound.group, &[]);
     pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
-}
-
-fn layouts(
-    gpu: &Gpu,
-    reflection: &Reflection,
-    entry_points: &[&str],
-    visibility: wgpu::ShaderStages,
-) -> (Vec<Binding>, wgpu::BindGroupLayout, wgpu::PipelineLayout) {
-    let bindings: Vec<Binding> = reflection
-        .bindings
-        .iter()
-        .filter(|binding| binding.entry_points.iter().any(|name| entry_points.contains(&name.as_str())))
-        .cloned()
-        .collect();
-    let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, visibility)).collect();
-    let layout = gpu
-        .device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
-    (bindings, layout, pipeline_layout)
 }
 
 fn shader_module(gpu: &Gpu, composed: &Composed) -> wgpu::ShaderModule {
