@@ -6,6 +6,7 @@ use crate::scattering::ScatteringError;
 use crate::scenes::SceneError;
 use crate::{GpuError, PassError, StageError};
 use std::fmt::Display;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// How a command ended badly.
@@ -36,6 +37,31 @@ impl CommandError {
             Self::Misuse(_) => 2,
             Self::Failure(_) => 1,
         })
+    }
+}
+
+/// What an error says, on one line.
+pub(super) fn one_line(error: impl Display) -> String {
+    let text = error.to_string();
+    let words: Vec<_> = text.split_whitespace().collect();
+    words.join(" ")
+}
+
+/// A problem with the path that it is about, unless it names that itself.
+pub(super) fn named(path: &Path, problem: String) -> String {
+    let path = path.display().to_string();
+    if problem.contains(&path) { problem } else { format!("{path}: {problem}") }
+}
+
+/// Misuse where a name is unknown, a failure where a shader is broken.
+pub(super) fn shader_error(error: airlight_validate::Error) -> CommandError {
+    use airlight_validate::Error;
+    match error {
+        Error::UnknownPass { .. }
+        | Error::UnknownModule { .. }
+        | Error::UnknownPermutation { .. }
+        | Error::Definition { .. } => CommandError::Misuse(one_line(error)),
+        other => CommandError::failure(one_line(other)),
     }
 }
 

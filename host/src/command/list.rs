@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! `airlight list`: passes and modules with what their headers say. `airlight info`: the machine.
+//! `airlight list`: passes and modules with what their headers say.
+
+mod header;
 
 use super::CommandError;
+use super::error::{named, one_line, shader_error};
+use super::text::{heading, line, pairs, print};
+use crate::Shaders;
 use crate::layout::kind_text;
-use crate::{Gpu, Shaders};
-use airlight_validate::{Error, Library, ModuleSource, PassSource, Reflection, Stage};
+use airlight_validate::{Library, ModuleSource, PassSource, Reflection, Stage};
+use header::{Header, items};
 use serde_json::{Value, json};
-use std::fmt::{Display, Write};
 use std::path::{Path, PathBuf};
 
 /// Lists what there is.
@@ -23,113 +27,12 @@ pub struct ListOptions {
     shaders: Option<PathBuf>,
 }
 
-/// What an error says, on one line.
-pub(super) fn one_line(error: impl Display) -> String {
-    let text = error.to_string();
-    let words: Vec<_> = text.split_whitespace().collect();
-    words.join(" ")
-}
-
-/// A problem with the path that it is about, unless it names that itself.
-pub(super) fn named(path: &Path, problem: String) -> String {
-    let path = path.display().to_string();
-    if problem.contains(&path) { problem } else { format!("{path}: {problem}") }
-}
-
-/// Misuse where a name is unknown, a failure where a shader is broken.
-pub(super) fn shader_error(error: Error) -> CommandError {
-    match error {
-        Error::UnknownPass { .. }
-        | Error::UnknownModule { .. }
-        | Error::UnknownPermutation { .. }
-        | Error::Definition { .. } => CommandError::Misuse(one_line(error)),
-        other => CommandError::failure(one_line(other)),
-    }
-}
-
 /// The shaders of a folder, or those built in.
 pub(super) fn shaders(folder: Option<&Path>) -> Result<Shaders, CommandError> {
     let Some(folder) = folder else { return Ok(Shaders::builtin()) };
     let library = Library::from_directory(folder)
         .map_err(|error| CommandError::failure(format!("--shaders {}", named(folder, one_line(error)))))?;
     Ok(Shaders::from_library(library))
-}
-
-/// The header of a shader file: `// key: text` and `// key NAME: text` before the first line of code.
-#[derive(Debug, Default, PartialEq)]
-struct Header {
-    summary: String,
-    source: String,
-    notes: Vec<String>,
-    /// Names with their meaning.
-    definitions: Vec<(String, String)>,
-    /// Names with their meaning.
-    bindings: Vec<(String, String)>,
-}
-
-impl Header {
-    fn new(source: &str) -> Self {
-        let mut header = Self::default();
-        for line in source.lines() {
-            let line = line.trim();
-            if line.is_empty() || line.starts_with('#') {
-                continue;
-            }
-            let Some(text) = line.strip_prefix("//").map(str::trim_start) else { break };
-            let Some((key, text)) = text.split_once(':') else { continue };
-            let text = text.trim().to_owned();
-            let append = |to: &mut String| {
-                let space = if to.is_empty() { "" } else { " " };
-                to.push_str(space);
-                to.push_str(&text);
-            };
-            match key.split_once(' ') {
-                None if key == "summary" => append(&mut header.summary),
-                None if key == "source" => append(&mut header.source),
-                None if key == "note" => header.notes.push(text),
-                Some(("definition", name)) => header.definitions.push((name.to_owned(), text)),
-                Some(("binding", name)) => header.bindings.push((name.to_owned(), text)),
-                _ => {}
-            }
-        }
-        header
-    }
-
-    fn binding(&self, name: &str) -> &str {
-        self.bindings.iter().find(|(of, _)| of == name).map_or("", |(_, text)| text)
-    }
-}
-
-/// The items of a module: what is written before them and their first line.
-fn items(source: &str) -> Vec<(String, String)> {
-    let mut items = Vec::new();
-    let mut comment = Vec::new();
-    let mut lines = source.lines();
-    while let Some(line) = lines.next() {
-        if let Some(text) = line.strip_prefix("///") {
-            comment.push(text.trim());
-        } else if ["fn ", "struct ", "const "].iter().any(|start| line.starts_with(start)) {
-            let mut item = line.to_owned();
-            // A signature may go over several lines.
-            while line.starts_with("fn ") && !item.contains('{') {
-                let Some(next) = lines.next() else { break };
-                item.push(' ');
-                item.push_str(next.trim());
-            }
-            let end = item.find('{').unwrap_or(item.len());
-            items.push((item[..end].trim().to_owned(), comment.join(" ")));
-            comment.clear();
-        } else if !line.starts_with('@') {
-            comment.clear();
-        }
-    }
-    items
-}
-
-/// Prints what was asked for. What is closed early, as by `head`, is no error.
-fn print(text: &str) {
-    use std::io::Write as _;
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
 }
 
 /// Lists passes and modules.
@@ -191,22 +94,6 @@ fn several(library: &Library, system: Option<&str>) -> Result<(String, Value), C
         module_values.push(json!({ "path": module.path, "summary": summary }));
     }
     Ok((text, json!({ "passes": pass_values, "modules": module_values })))
-}
-
-fn heading(text: &mut String, title: &str, empty: bool) {
-    if !empty {
-        let gap = if text.is_empty() { "" } else { "\n" };
-        line(text, format_args!("{gap}{title}"));
-    }
-}
-
-fn line(text: &mut String, words: std::fmt::Arguments<'_>) {
-    // Writing to a string cannot fail.
-    let _ = text.write_fmt(words);
-    while text.ends_with(' ') {
-        text.pop();
-    }
-    text.push('\n');
 }
 
 fn head(text: &mut String, name: &str, header: &Header) {
@@ -293,14 +180,6 @@ fn one_pass(shaders: &Shaders, subject: &str) -> Result<(String, Value), Command
     Ok((text, value))
 }
 
-fn pairs(text: &mut String, title: &str, pairs: &[(String, String)]) {
-    heading(text, title, pairs.is_empty());
-    let width = pairs.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    for (name, about) in pairs {
-        line(text, format_args!("  {name:width$}  {about}"));
-    }
-}
-
 fn entry_points(text: &mut String, reflection: &Reflection) {
     heading(text, "Entry points", reflection.entry_points.is_empty());
     for entry in &reflection.entry_points {
@@ -376,94 +255,4 @@ fn pass_value(
         "bindings": bindings,
         "structs": structs,
     })
-}
-
-/// Says which adapter there is and what may be asked of it.
-pub fn info() -> Result<(), CommandError> {
-    let gpu = pollster::block_on(Gpu::new())?;
-    let adapter = &gpu.adapter;
-    let limits = &gpu.limits;
-    let mut text = String::new();
-    let driver = one_line(format!("{} {}", adapter.driver, adapter.driver_info));
-    for (name, value) in [
-        ("adapter", adapter.name.clone()),
-        ("type", format!("{:?}", adapter.device_type)),
-        ("back end", adapter.backend.to_string()),
-        ("driver", driver),
-        ("airlight", env!("CARGO_PKG_VERSION").to_owned()),
-    ] {
-        line(&mut text, format_args!("{name:10}{value}"));
-    }
-    line(&mut text, format_args!("\nLimits in force: WebGPU's defaults, no optional feature"));
-    let [x, y, z] = [
-        limits.max_compute_workgroup_size_x,
-        limits.max_compute_workgroup_size_y,
-        limits.max_compute_workgroup_size_z,
-    ];
-    let mebibytes = |bytes: u64| format!("{} MiB", bytes >> 20);
-    for (name, value) in [
-        ("width and height of a texture", limits.max_texture_dimension_2d.to_string()),
-        ("layers of a texture", limits.max_texture_array_layers.to_string()),
-        ("sides of a 3D texture", limits.max_texture_dimension_3d.to_string()),
-        ("buffer", mebibytes(limits.max_buffer_size)),
-        ("storage buffer", mebibytes(limits.max_storage_buffer_binding_size)),
-        ("uniform buffer", format!("{} KiB", limits.max_uniform_buffer_binding_size >> 10)),
-        ("workgroup", format!("{x},{y},{z}, {} in all", limits.max_compute_invocations_per_workgroup)),
-        ("workgroup memory", format!("{} KiB", limits.max_compute_workgroup_storage_size >> 10)),
-        ("workgroups a dimension", limits.max_compute_workgroups_per_dimension.to_string()),
-        ("storage textures a stage", limits.max_storage_textures_per_shader_stage.to_string()),
-        ("storage buffers a stage", limits.max_storage_buffers_per_shader_stage.to_string()),
-        ("sampled textures a stage", limits.max_sampled_textures_per_shader_stage.to_string()),
-    ] {
-        line(&mut text, format_args!("  {name:31}{value}"));
-    }
-    print(&text);
-    Ok(())
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn headers_are_read() {
-        let header = Header::new(
-            "// SPDX-License-Identifier: MIT\n#define_import_path a::b\n\
-             // summary: Does it.\n// source: a: b.\n// note: one\n\
-             // note: two\n// definition M: how many.\n// binding x: out, metres.\nfn f() {}\n// summary: not this\n",
-        );
-        assert_eq!(header.summary, "Does it.");
-        assert_eq!(header.source, "a: b.");
-        assert_eq!(header.notes, ["one", "two"]);
-        assert_eq!(header.definitions, [("M".to_owned(), "how many.".to_owned())]);
-        assert_eq!(header.binding("x"), "out, metres.");
-        assert_eq!(header.binding("y"), "");
-    }
-
-    #[test]
-    fn every_builtin_pass_and_module_is_described() {
-        let shaders = Shaders::builtin();
-        for pass in shaders.library().passes() {
-            let header = Header::new(&pass.source);
-            assert!(!header.summary.is_empty(), "{}", pass.name);
-            for permutation in shaders.library().permutations(&pass.name).unwrap() {
-                let reflection = shaders.compose(&pass.name, &permutation.name).unwrap().reflect();
-                for binding in reflection.bindings {
-                    assert!(!header.binding(&binding.name).is_empty(), "{} {}", pass.name, binding.name);
-                }
-            }
-        }
-        for module in shaders.library().modules() {
-            assert!(!Header::new(&module.source).summary.is_empty(), "{}", module.path);
-            assert!(!items(&module.source).is_empty(), "{}", module.path);
-        }
-    }
-
-    #[test]
-    fn items_carry_their_comments() {
-        let source = "// head\n/// What a is.\nconst A: u32 = 1u;\n\nfn f(\n    x: f32\n) -> f32 {\n    return x;\n}\n";
-        let expected = [("const A: u32 = 1u;", "What a is."), ("fn f( x: f32 ) -> f32", "")];
-        assert_eq!(items(source), expected.map(|(item, text)| (item.to_owned(), text.to_owned())));
-    }
 }

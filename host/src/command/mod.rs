@@ -4,11 +4,13 @@
 mod bench;
 mod error;
 mod gallery;
+mod info;
 mod list;
 mod parse;
 mod progress;
 mod run;
 mod scattering;
+mod text;
 
 pub use bench::baselines;
 pub use error::CommandError;
@@ -53,12 +55,12 @@ pub fn main() -> ExitCode {
         Command::Run(options) => run::run(&options),
         Command::Bench(options) => bench::run(&options, quiet),
         Command::List(options) => list::list(&options),
-        Command::Info => list::info(),
+        Command::Info => info::run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("airlight: {}", list::one_line(error.to_string()));
+            eprintln!("airlight: {}", error::one_line(error.to_string()));
             error.exit_code()
         }
     }

@@ -6,7 +6,7 @@ use super::plan::{Plan, Work};
 use super::spelling::{Input, Output, Scalar, Setting};
 use super::{Options, texels};
 use crate::command::CommandError;
-use crate::command::list::{named, one_line};
+use crate::command::error::{named, one_line};
 use crate::formats::{Array, ArrayData, read_npy};
 use crate::layout::{kind_text, texture_format};
 use airlight_validate::{Binding, BindingKind, Sample, TextureDimension};

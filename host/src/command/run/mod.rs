@@ -8,7 +8,8 @@ mod spelling;
 mod texels;
 
 use super::CommandError;
-use super::list::{named, one_line, shaders};
+use super::error::{named, one_line};
+use super::list::shaders;
 use crate::formats::{Array, ArrayData, write_npy};
 use crate::{Bound, Buffer, Gpu, Pass, RenderStages, Resource, Sampler, Texture};
 use airlight_validate::Definitions;

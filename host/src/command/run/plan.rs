@@ -4,7 +4,7 @@
 use super::Options;
 use crate::Shaders;
 use crate::command::CommandError;
-use crate::command::list::{one_line, shader_error};
+use crate::command::error::{one_line, shader_error};
 use airlight_validate::naga::valid::{ValidationFlags, Validator};
 use airlight_validate::{
     Binding, Composed, EntryPoint, Interface, Library, Reflection, Stage, StructLayout, core_capabilities,
