@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The command as a person meets it: `list`, `info`, and what `scattering` does with bad input.
-//! `airlight run` is tested in `command_run.rs`.
+//! `airlight run` is tested in `command_run.rs` and `command_run_refusals.rs`.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/command.rs"]
 mod command;
 
 use airlight_wgsl::{MODULES, PASSES};
-use command::{airlight, airlight_with, files, refuses, succeeds};
+use command::{airlight, airlight_with, files, folder, refuses, succeeds};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
-
-fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
-}
 
 fn summary(source: &str) -> &str {
     source.lines().find_map(|line| line.strip_prefix("// summary: ")).unwrap()

@@ -6,6 +6,16 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// An empty folder, gone with what is returned.
+pub fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// Arguments from one line; none of them has a space in it.
+pub fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 /// A release binary of the workspace, beside the one that runs this test.
 pub fn binary(name: &str) -> PathBuf {
     let own = std::env::current_exe().unwrap();
