@@ -23,7 +23,8 @@ pub fn hold(what: &str, error: f64, budget: f64) {
 
 /// The greatest difference of pairs; NaN where there is one.
 pub fn worst(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
-    pairs.map(|(found, expected)| (found - expected).abs()).fold(0.0, |a, b| if b <= a { a } else { b })
+    let errors = pairs.map(|(found, expected)| (found - expected).abs());
+    errors.fold(0.0, |a, b| if a.is_nan() || b <= a { a } else { b })
 }
 
 /// A number of the GPU in the precision of the references.
