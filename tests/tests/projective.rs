@@ -880,8 +880,8 @@ fn regions_and_near_planes_keep_the_figures() {
     let eye = gpu::reference_camera(&scene.view.perspective().unwrap(), PICTURE);
     let cases = [
         ("from the eye", eye, scene.medium, reference::Start::Eye, [0.005, 0.005, 0.005]),
-        ("from the near plane", near, scene.medium, reference::Start::NearPlane, [0.03, 0.01, 0.01]),
-        ("from the near plane in thick air", near, thick, reference::Start::NearPlane, [0.08, 0.03, 0.01]),
+        ("from the near plane", near, scene.medium, reference::Start::NearPlane, [0.01, 0.005, 0.005]),
+        ("from the near plane in thick air", near, thick, reference::Start::NearPlane, [0.03, 0.01, 0.01]),
     ];
     for (name, camera, medium, start, budgets) in cases {
         let stage = Stage::new(&scene.mesh, camera, towards(&scene), medium, PICTURE, 1024);

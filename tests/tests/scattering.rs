@@ -636,7 +636,7 @@ fn wild(random: &mut Random, picture: [u32; 2]) -> Wild {
 
 #[test]
 fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
-    const COUNT: usize = 320;
+    const COUNT: usize = 3200;
     const BATCH: usize = 64;
     const PICTURE: [u32; 2] = [16, 8];
     const PIXELS: usize = 128;

@@ -43,12 +43,13 @@ fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
 
 /// The view ray through `ndc`, of any camera.
 fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
-    if camera.projection == ORTHOGRAPHIC {
-        let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
-        let near = camera.world_from_clip * vec4<f32>(ndc, camera.near_depth, 1.0);
-        return Ray(near.xyz / near.w, normalize(far.xyz - near.xyz));
-    }
-    return perspective_ray(camera, ndc);
+    // Values, not branches: some drivers compile a shader anew for every value of a uniform that a branch depends on.
+    let parallel = camera.projection == ORTHOGRAPHIC;
+    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
+    let near = camera.world_from_clip * vec4<f32>(ndc, camera.near_depth, 1.0);
+    let origin = select(camera.eye, near.xyz / select(1.0, near.w, parallel), parallel);
+    // With w = 0 (infinite far plane) far.xyz is the direction itself.
+    return Ray(origin, normalize(far.xyz - select(camera.eye * far.w, near.xyz, parallel)));
 }
 
 /// The view ray through `ndc` of a perspective camera.
@@ -61,10 +62,8 @@ fn perspective_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
 /// Vector from `point`, metres in the world, TOWARDS the viewer, of any length: to the eye, or against the parallel
 /// rays of an orthographic camera.
 fn towards_viewer(camera: Camera, point: vec3<f32>) -> vec3<f32> {
-    if camera.projection == ORTHOGRAPHIC {
-        return camera.world_from_clip[2].xyz * (camera.near_depth - camera.far_depth);
-    }
-    return camera.eye - point;
+    let parallel = camera.world_from_clip[2].xyz * (camera.near_depth - camera.far_depth);
+    return select(camera.eye - point, parallel, camera.projection == ORTHOGRAPHIC);
 }
 
 /// Distance in metres along `ray`, the view ray through `ndc`, of the surface with the depth-buffer
@@ -109,8 +108,6 @@ fn far_plane_distance(camera: Camera, limit: f32) -> f32 {
     let forward = forward_direction(camera);
     let point = camera.world_from_clip * vec4<f32>(0.0, 0.0, camera.far_depth, 1.0);
     let along = dot(point.xyz - camera.eye * point.w, forward);
-    if along >= limit * point.w {
-        return limit;
-    }
-    return max(along / point.w, 0.0);
+    let beyond = along >= limit * point.w;
+    return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
 }

@@ -3,6 +3,8 @@
 // summary: A light, its fall-off and texture, and the clip space of its standard shadow map.
 // source: thesis 4.2.1; a point source seen through a cone and softened by its radius.
 // note: The matrix of a directional light is affine, that of a spot a perspective projection from its position.
+// note: Kinds are told apart by values, not branches: some drivers compile a shader anew for every value of a uniform
+// note: that a branch depends on.
 
 #import airlight::core::finite::finite_or_rgb
 
@@ -40,35 +42,28 @@ struct Light {
 
 /// Unit vector from `point`, metres in the world, TOWARDS the light; zero where a light at a point is right there.
 fn direction_to_light(light: Light, point: vec3<f32>) -> vec3<f32> {
-    if light.kind == DIRECTIONAL {
-        return light.direction;
-    }
     let between = light.position - point;
-    return between * inverseSqrt(max(dot(between, between), 1e-30));
+    let local = between * inverseSqrt(max(dot(between, between), 1e-30));
+    return select(local, light.direction, light.kind == DIRECTIONAL);
 }
 
 /// Angular fall-off, 0..1, along the light ray with the unit vector `towards` TOWARDS the light: of a spot 1 inside
 /// the inner cone, 0 outside the outer one, smooth between; of every other light 1.
 fn angular_falloff(light: Light, towards: vec3<f32>) -> f32 {
-    if light.kind != SPOT {
-        return 1.0;
-    }
     // Not smoothstep: WGSL leaves it open what that is between two equal edges.
     let above = dot(towards, light.direction) - light.spot_cosines.y;
     let unit = clamp(above / max(light.spot_cosines.x - light.spot_cosines.y, 1e-6), 0.0, 1.0);
-    return unit * unit * (3.0 - 2.0 * unit);
+    return select(1.0, unit * unit * (3.0 - 2.0 * unit), light.kind == SPOT);
 }
 
 /// What `radiance` is multiplied by to give the irradiance at normal incidence of `point`, metres in the world, in clear
 /// air without blockers: 1 for a directional light, else `angular_falloff` over the square of the distance in 1/m^2,
 /// softened by the light's radius.
 fn light_falloff(light: Light, point: vec3<f32>) -> f32 {
-    if light.kind == DIRECTIONAL {
-        return 1.0;
-    }
     let between = light.position - point;
     let square = dot(between, between) + light.radius * light.radius;
-    return angular_falloff(light, direction_to_light(light, point)) / max(square, 1e-12);
+    let local = angular_falloff(light, direction_to_light(light, point)) / max(square, 1e-12);
+    return select(local, 1.0, light.kind == DIRECTIONAL);
 }
 
 /// Position in texels of a map, and depth, of a point in the clip space of that map; a point at or behind the light
@@ -90,20 +85,11 @@ fn point_from_texels(world_from_clip: mat4x4<f32>, size: vec2<f32>, texels: vec2
 /// Position in texels of the shadow map, and depth, of a point in the world, metres; a point behind a spot is carried
 /// outside the map. `size`: of the map in texels.
 fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let clip = light.clip_from_world * vec4<f32>(point, 1.0);
-    if light.kind == DIRECTIONAL {
-        // Affine: w is 1.
-        return vec3<f32>((clip.xy * vec2<f32>(0.5, -0.5) + 0.5) * size, clip.z);
-    }
-    return texels_from_clip(clip, size);
+    return texels_from_clip(light.clip_from_world * vec4<f32>(point, 1.0), size);
 }
 
 /// The point in the world, metres, at a position in texels and a depth 0..1 of the shadow map.
 fn shadow_point(light: Light, size: vec2<f32>, texels: vec2<f32>, depth: f32) -> vec3<f32> {
-    if light.kind == DIRECTIONAL {
-        let ndc = (texels / size) * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
-        return (light.world_from_clip * vec4<f32>(ndc, depth, 1.0)).xyz;
-    }
     return point_from_texels(light.world_from_clip, size, texels, depth);
 }
 

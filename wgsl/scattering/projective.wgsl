@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::scattering::projective
 // summary: Projective rows around a directional light: view rays run along rows at constant depth after one matrix.
-// source: thesis 4.4.2; weights after 4.3.2, Eq. 4.8 and 4.12.
+// source: thesis 4.4.2; weights after 4.3.2, Eq. 4.8.
 // note: In the axes (along, across, away) a point relative to the eye has the coordinates X, Y, Z: light rays keep X and
 // note: Y, view rays keep Y / X and Z / X. Rows are Y / X, depth is Z / X, columns run with -1 / X, so that all is one
 // note: projective matrix. An orthographic camera has Y and Z - tilt X instead, and columns run with X.
@@ -81,10 +81,7 @@ fn column_from_x(rows: ProjectiveRows, width: f32, x: f32) -> f32 {
     }
     let begin = split_begin(rows, split);
     let end = rows.bounds[split];
-    var unit = (inside - begin) / (end - begin);
-    if rows.projection == PERSPECTIVE {
-        unit = unit * end / inside;
-    }
+    let unit = (inside - begin) / (end - begin) * select(1.0, end / inside, rows.projection == PERSPECTIVE);
     return (f32(split) + clamp(unit, 0.0, 1.0)) * (width / f32(rows.splits));
 }
 
@@ -95,10 +92,8 @@ fn x_from_column(rows: ProjectiveRows, width: f32, column: f32) -> f32 {
     let unit = clamp(share - f32(split), 0.0, 1.0);
     let begin = split_begin(rows, split);
     let end = rows.bounds[split];
-    if rows.projection == PERSPECTIVE {
-        return begin * end / (end - unit * (end - begin));
-    }
-    return begin + unit * (end - begin);
+    let divided = begin * end / (end - unit * (end - begin));
+    return select(begin + unit * (end - begin), divided, rows.projection == PERSPECTIVE);
 }
 
 /// X of the right edge of texel `column`, metres.
@@ -169,18 +164,17 @@ fn projective_ray(
     );
 }
 
-/// Metres along the reference ray of `row` for one of X: the geometric mean of the least and the greatest of the
-/// row's view rays, the optimum of Eq. 4.12.
+/// Metres along the reference ray of `row` for one of X: the bisectrix of the row's view rays that cross a texel fastest
+/// and slowest, as for slices.
 fn reference_reach(rows: ProjectiveRows, height: f32, row: f32) -> f32 {
-    if rows.projection != PERSPECTIVE {
-        return sqrt(1.0 + rows.tilt * rows.tilt);
-    }
     let slope = row_slope(rows, height, row);
     let depth_max = rows.depth_min + rows.depth_span;
-    let least = clamp(0.0, rows.depth_min, depth_max);
-    let greatest = max(abs(rows.depth_min), abs(depth_max));
-    let across = 1.0 + slope * slope;
-    return sqrt(sqrt(across + least * least) * sqrt(across + greatest * greatest));
+    let side = sqrt(1.0 + slope * slope);
+    let fastest = vec2<f32>(side, clamp(0.0, rows.depth_min, depth_max));
+    let slowest = vec2<f32>(side, select(rows.depth_min, depth_max, abs(depth_max) > abs(rows.depth_min)));
+    let middle = normalize(fastest) + normalize(slowest);
+    let parallel = sqrt(1.0 + rows.tilt * rows.tilt);
+    return select(parallel, side * length(middle) / middle.x, rows.projection == PERSPECTIVE);
 }
 
 /// Integral of transmittance over `metres` from where it is 1, metres: the weight of that stretch of a ray. `extinction`

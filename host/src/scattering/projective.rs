@@ -14,9 +14,9 @@ const GUARD: f64 = 0.05;
 
 /// Greatest obliqueness that [`choose`] takes; see [`Projective::obliqueness`]. Against the exact radiance, by three
 /// splits of 171 columns and 512 rows with 32 bases, in the scenes foliage, terrain, torus and plane: 0.4, 0.2, 0.3,
-/// 1.2 % error at an obliqueness of 1, 0.9, 0.7, 1.4, 3.3 % at 8, 1.7, 1.8, 2.7, 6.3 % at 20 and 3.7, 3.8, 6.8, 14 %
-/// at 120, where epipolar slices have 0.7, 0.4, 1.1, 2.1 % at 8 and no more than 1.0, 0.6, 2.0, 2.3 % anywhere.
-pub const OBLIQUENESS_LIMIT: f32 = 8.0;
+/// 1.2 % error at an obliqueness of 1, 0.7, 0.4, 0.7, 2.3 % at 6, 1.2, 0.8, 1.3, 3.7 % at 12 and 4.5, 3.8, 6.5, 9.9 %
+/// at 120, where epipolar slices have 0.4, 0.3, 0.3, 1.1 % at 6 and no more than 0.6, 0.4, 0.7, 1.3 % anywhere.
+pub const OBLIQUENESS_LIMIT: f32 = 6.0;
 
 /// Why there are no projective rows.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

@@ -82,11 +82,10 @@ fn vertex_surface(
 /// Clip position of a surface point, moved off the surface by the footprint of the filter, which hides the staircase of
 /// the map. `clip_from_world`: of the map; `width`: of the map in texels.
 fn shadow_clip(clip_from_world: mat4x4<f32>, width: f32, point: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
-    var texel = 2.0 / (width * length(matrix_row(clip_from_world, 0u).xyz));
-    if light.kind != DIRECTIONAL {
-        // The footprint grows with the distance from the light, and towards the corners of a wide view.
-        texel *= 1.5 * max(dot(matrix_row(clip_from_world, 3u), vec4<f32>(point, 1.0)), 0.0);
-    }
+    // The footprint of a light at a point grows with the distance from it, and towards the corners of a wide view.
+    let growth = 1.5 * max(dot(matrix_row(clip_from_world, 3u), vec4<f32>(point, 1.0)), 0.0);
+    let scale = select(growth, 1.0, light.kind == DIRECTIONAL);
+    let texel = 2.0 * scale / (width * length(matrix_row(clip_from_world, 0u).xyz));
     let towards = direction_to_light(light, point);
     return clip_from_world * vec4<f32>(point + normal * (1.5 * texel) + towards * texel, 1.0);
 }

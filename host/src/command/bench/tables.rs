@@ -35,7 +35,7 @@ pub fn scattering(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>,
     for (map, bases) in cases {
         let [width, height] = map;
         bar.set_message(format!("map {width}x{height}, {bases} bases"));
-        let settings = Settings { bases, map, ..Settings::tuned(gpu) };
+        let settings = Settings { bases, map, epipole_march: false, ..Settings::tuned(gpu) };
         let prefiltered = Prefiltered::new(gpu, shaders, settings, SIZE)?;
         let bound = prefiltered.bind(gpu, &stage.inputs())?;
         run(gpu, &|encoder| prefiltered.record(encoder, &bound))?;
@@ -73,11 +73,14 @@ fn parallel_strategies(
     quiet: bool,
 ) -> Result<Vec<Row>, CommandError> {
     let bar = progress::bar(20, quiet);
+    let tuned = Settings { epipole_march: false, ..Settings::tuned(gpu) };
     let mut rows = Vec::new();
     let mut measure = |name: String, settings: Settings| -> Result<(), CommandError> {
         bar.set_message(name.clone());
         let prefiltered = Prefiltered::new(gpu, shaders, settings, SIZE)?;
         let bound = prefiltered.bind(gpu, &stage.inputs())?;
+        // Filter and evaluation need the slices of the frame.
+        run(gpu, &|encoder| prefiltered.record(encoder, &bound))?;
         let samples = interleaved(
             gpu,
             &[&|encoder| prefiltered.record_filter(encoder, &bound), &|encoder| {
@@ -92,11 +95,10 @@ fn parallel_strategies(
     };
     for regions in [1, 2, 3, 4] {
         for bases_per_thread in [4, 8, 16, 32] {
-            let settings = Settings { regions, bases_per_thread, ..Settings::tuned(gpu) };
+            let settings = Settings { regions, bases_per_thread, ..tuned };
             measure(format!("regions_{regions}_bases_{bases_per_thread}"), settings)?;
         }
     }
-    let tuned = Settings::tuned(gpu);
     measure("recurrence".to_owned(), tuned)?;
     measure("direct_sines".to_owned(), Settings { direct_sines: true, ..tuned })?;
     measure("linear".to_owned(), Settings { filtering: Filtering::Linear, ..tuned })?;
@@ -115,7 +117,8 @@ fn screens(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comman
         let [width, height] = size;
         bar.set_message(format!("picture {width}x{height}"));
         let (_, stage) = stage(gpu, shaders, "foliage", size)?;
-        let prefiltered = Prefiltered::new(gpu, shaders, Settings::tuned(gpu), size)?;
+        let settings = Settings { epipole_march: false, ..Settings::tuned(gpu) };
+        let prefiltered = Prefiltered::new(gpu, shaders, settings, size)?;
         let bound = prefiltered.bind(gpu, &stage.inputs())?;
         let samples = interleaved(
             gpu,

@@ -260,21 +260,18 @@ impl Projective {
     }
 
     /// Metres of the reference ray of a row over which X grows by one, for the weights of the
-    /// prefiltering: the geometric mean of the least and greatest over the row's view rays.
+    /// prefiltering: of the bisectrix of the row's view rays that cross a texel fastest and slowest.
     #[must_use]
     pub fn reference_length(&self, j: usize) -> f64 {
         if let Some(drift) = self.orthographic {
             return drift.x_over_t.recip();
         }
-        let slope = self.row_slope(j);
-        let length = |z: f64| (1.0 + slope * slope + z * z).sqrt();
-        let greatest = length(self.z[0]).max(length(self.z[1]));
-        let least = if self.z[0] < 0.0 && self.z[1] > 0.0 {
-            length(0.0)
-        } else {
-            length(self.z[0]).min(length(self.z[1]))
-        };
-        (least * greatest).sqrt()
+        // Angles in the row's plane, against the light ray's normal.
+        let side = 1.0_f64.hypot(self.row_slope(j));
+        let [from, to] = self.z.map(|z| (z / side).atan());
+        let fastest = 0.0_f64.clamp(from, to);
+        let slowest = if to.abs() > from.abs() { to } else { from };
+        side / (0.5 * (fastest + slowest)).cos()
     }
 
     /// The weights of a row's texels in the prefiltering: lengths on the reference ray, metres, for an

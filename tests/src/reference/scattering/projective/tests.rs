@@ -203,7 +203,8 @@ fn weights_of_the_reference_ray_are_those_of_a_ray_of_its_length() {
     for extinction in [0.0, 0.03, 0.5] {
         let rows = straight(0.5, 40.0, 256, 2);
         let metres = rows.reference_length(0);
-        assert!((metres - (1.0_f64 * 2.0_f64.sqrt()).sqrt()).abs() < 1e-12);
+        // Slopes from -1 to 1: the ray of 22.5 degrees.
+        assert!((metres - std::f64::consts::FRAC_PI_8.cos().recip()).abs() < 1e-12);
         let weights = rows.reference_weights(0, extinction);
         let sum: f64 = weights.iter().sum();
         let end = 40.0 * metres;
