@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::scattering::visibility_moments
 // summary: Mean visibility of a view ray from six filtered moments of the stored depths: bounds of the share beyond it.
-// source: Peters, Muenstermann, Wetzstein, Klein, "Improved moment shadow maps for translucent occluders, soft shadows and
-// source: single scattering" (JCGT 6(1), 2017), Algorithm 1 and prefiltered single scattering with six moments.
+// source: Peters et al., "Improved moment shadow maps for translucent occluders, soft shadows and single scattering" (2017).
+// note: Algorithm 1 of C. Peters, C. Muenstermann, N. Wetzstein and R. Klein, JCGT 6(1), with six moments.
 // note: lit if and only if z_ray <= z_stored, so that the mean visibility is the share of stored depths >= z_ray.
 // note: Depths are signed, z in -1..1. The paper takes powers of z and looks for an affine transform of them that survives
 // note: quantisation; here the moments are means of the Chebyshev polynomials T_1(z)..T_6(z), which is such a transform:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Turns the rectified map into six moments and filters them along its rows by a weighted running mean.
-// source: Peters, Muenstermann, Wetzstein, Klein, "Improved moment shadow maps" (JCGT 6(1), 2017), prefiltered single
-// source: scattering; weights after thesis 4.3.3, Eq. 4.8 and 4.9.
+// source: Peters et al., "Improved moment shadow maps" (JCGT 6(1), 2017); weights as in thesis 4.3.3, Eq. 4.8 and 4.9.
 // note: One workgroup takes one row, each thread a stretch of it: the threads' sums are scanned, then every thread goes
 // note: over its stretch again and writes. Sums of blocks of BLOCK texels keep f32 below the 21 bits of the storage.
 // note: Texel i holds the mean over the texels 0 .. i. Depths outside 0..1 are clamped, non-finite ones count as unblocked.

@@ -53,10 +53,11 @@ fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
             .unwrap_or(column);
         matrix.swap(column, pivot);
         right.swap(column, pivot);
+        let above = matrix[column].clone();
         for row in column + 1..n {
-            let factor = matrix[row][column] / matrix[column][column];
-            for k in column..n {
-                matrix[row][k] -= factor * matrix[column][k];
+            let factor = matrix[row][column] / above[column];
+            for (entry, subtracted) in matrix[row].iter_mut().zip(&above) {
+                *entry -= factor * subtracted;
             }
             right[row] -= factor * right[column];
         }
