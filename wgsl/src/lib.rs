@@ -102,6 +102,7 @@ modules! {
     ],
     scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
     scattering::visibility_fourier ["core::fourier_basis"],
+    scattering::visibility_moments ["core::fourier_basis"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
     scattering::upsample [],
 }
@@ -116,6 +117,7 @@ passes! {
     scattering/rectify_projective,
     scattering/project,
     scattering/filter,
+    scattering/filter_moments,
     scattering/evaluate,
     scattering/evaluate_projective,
     scattering/evaluate_local,
