@@ -102,9 +102,18 @@ modules! {
     ],
     scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
     scattering::visibility_fourier ["core::fourier_basis"],
+    scattering::visibility_rank ["core::prefix_sum"],
     scattering::visibility_moments ["core::fourier_basis"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
     scattering::upsample [],
+    scattering::lit [
+        "core::light", "core::phase", "core::shadow_views", "scattering::local_light", "scattering::march",
+        "scattering::shadow_lookup"
+    ],
+    scattering::prefiltered [
+        "scattering::rows", "scattering::visibility_fourier", "scattering::visibility_moments",
+        "scattering::visibility_rank"
+    ],
 }
 
 passes! {
@@ -118,6 +127,7 @@ passes! {
     scattering/project,
     scattering/filter,
     scattering/filter_moments,
+    scattering/rank,
     scattering/evaluate,
     scattering/evaluate_projective,
     scattering/evaluate_local,

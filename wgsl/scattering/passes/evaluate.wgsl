@@ -34,19 +34,17 @@
 
 #import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel}
 #import airlight::core::finite::finite_or
-#import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
+#import airlight::core::light::Light
 #import airlight::core::picture::picture_corner
 #import airlight::core::prefix_sum::prefix_weight
-#import airlight::core::shadow_views::{ShadowViews, view_position}
-#import airlight::scattering::march::march_shadow_map
+#ifdef EPIPOLE_MARCH
+#import airlight::scattering::lit::{marched_light, marched_visibility}
+#endif
+#import airlight::scattering::prefiltered::{Prefix, map_size, prefix_visibility, prefix_colors}
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
 }
-#import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin, prefix_column}
-#import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, lit_by_shadow}
-#import airlight::scattering::visibility_fourier::{
-    fourier_visibility, fourier_visibility_nearest, fourier_colors, fourier_colors_nearest
-}
+#import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -55,35 +53,12 @@
 @group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
 @group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
-#ifdef EPIPOLE_MARCH
-#ifdef SHADOW_ARRAY
-@group(#{GROUP}) @binding(6) var shadow_maps: texture_2d_array<f32>;
-@group(#{GROUP}) @binding(10) var<uniform> shadow_views: ShadowViews;
-#else
-@group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
-#endif
-#ifdef LIGHT_TEXTURE
-@group(#{GROUP}) @binding(11) var light_texture: texture_2d<f32>;
-@group(#{GROUP}) @binding(12) var light_sampler: sampler;
-#endif
-#endif
-@group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
-#ifndef NEAREST
-@group(#{GROUP}) @binding(8) var bases_sampler: sampler;
-#endif
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
 
-const LAYERS: u32 = u32(#{BASES}) / 4u;
 #ifdef REGIONS
 const ROW_REGIONS: u32 = u32(#{REGIONS});
 #else
 const ROW_REGIONS: u32 = 1u;
-#endif
-
-#ifdef LANCZOS
-const WINDOWED: bool = true;
-#else
-const WINDOWED: bool = false;
 #endif
 
 /// Rays that cover fewer texels are marched.
@@ -91,37 +66,16 @@ const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
-#ifdef COLORS
-/// Mean of visibility times fall-off of a ray for each colour, read at `column` of its row, in texels.
-fn filtered_colors(ray: RowRay, column: f32) -> vec3<f32> {
-    let size = vec2<f32>(textureDimensions(bases).xy);
-#ifdef NEAREST
-    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
-    return fourier_colors_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
-#else
-    let place = vec2<f32>(column, ray.row + 0.5) / size;
-    return fourier_colors(bases, bases_sampler, place, ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
-#endif
+/// The stretch of a ray up to `texels` in the region of its row that begins at texel `first`.
+fn prefix(ray: RowRay, first: f32, texels: f32, reference_step: f32) -> Prefix {
+    return Prefix(ray.row, frame.wraps, first, texels, reference_step);
 }
-#else
-/// The filtered series of a ray, read at `column` of its row, in texels.
-fn filtered_series(ray: RowRay, column: f32) -> f32 {
-    let size = vec2<f32>(textureDimensions(bases).xy);
-#ifdef NEAREST
-    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
-    return fourier_visibility_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, WINDOWED);
-#else
-    let place = vec2<f32>(column, ray.row + 0.5) / size;
-    return fourier_visibility(bases, bases_sampler, place, ray.depth, LAYERS, WINDOWED);
-#endif
-}
-#endif
 
 #ifndef COLORS
 /// Mean visibility of a ray over its stretch of the row. `reference_step`: optical depth of a texel by which the bases
 /// are weighted; `optical_step`: that of the ray itself, by which regions are put together.
 fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
-    let width = textureDimensions(bases).x;
+    let width = map_size().x;
     let first = region_of(ray.begin, width, ROW_REGIONS);
     let last = region_of(ray.end, width, ROW_REGIONS);
     var sum = 0.0;
@@ -130,12 +84,13 @@ fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
         let start = f32(region_begin(region, width, ROW_REGIONS));
         let from_texel = max(ray.begin, start);
         let to_texel = min(ray.end, f32(region_begin(region + 1u, width, ROW_REGIONS)));
-        var mean = filtered_series(ray, prefix_column(to_texel, start));
+        var mean = prefix_visibility(prefix(ray, start, to_texel, reference_step), ray.depth);
 #ifdef NEAR_PLANE
         if from_texel > start {
             let whole = prefix_weight(reference_step, to_texel - start);
             let before = prefix_weight(reference_step, from_texel - start);
-            let part = mean * whole - filtered_series(ray, prefix_column(from_texel, start)) * before;
+            let skipped = prefix_visibility(prefix(ray, start, from_texel, reference_step), ray.depth);
+            let part = mean * whole - skipped * before;
             mean = clamp(part / max(whole - before, 1e-6 * whole), 0.0, 1.0);
         }
 #endif
@@ -148,40 +103,6 @@ fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
 }
 #endif
 
-#ifdef PER_POINT
-/// Visibility, 0 or 1, times fall-off and light texture at a point in the world, metres.
-fn lit_at(point: vec3<f32>) -> vec3<f32> {
-#ifdef SHADOW_ARRAY
-    let place = view_position(shadow_views, vec2<f32>(textureDimensions(shadow_maps)), point);
-    let visibility = lit_by_shadow(shadow_in_view(shadow_maps, place, light.far_depth), light.far_depth);
-#else
-    let visibility = lit_by_shadow(shadow_in_map(shadow_map, light, point), light.far_depth);
-#endif
-    let lit = vec3<f32>(visibility * angular_falloff(light, direction_to_light(light, point)));
-#ifdef LIGHT_TEXTURE
-    return lit * light_texture_color(light, light_texture, light_sampler, point);
-#else
-    return lit;
-#endif
-}
-
-/// Mean of `lit_at` over a view ray between two distances in metres, by equal steps, weighted by transmittance.
-fn marched_light(
-    origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
-) -> vec3<f32> {
-    let stride = (span.y - span.x) / f32(max(steps, 1u));
-    var sum = vec3<f32>(0.0);
-    var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
-        let along = stride * (f32(done) + offset);
-        let weight = exp(-min(extinction * stride * f32(done), 80.0));
-        sum += weight * lit_at(origin + (span.x + along) * direction);
-        total += weight;
-    }
-    return sum / max(total, 1.0);
-}
-#endif
-
 /// Radiance, and mean visibility in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
@@ -189,7 +110,7 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
     // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
-    let width = f32(textureDimensions(bases).x);
+    let width = f32(map_size().x);
     let texels = clamp(width * ray.distance * ray.sine / slice.radius_max, 0.0, width);
     var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(slice, ray));
 #ifdef DEPTH_WARP
@@ -208,14 +129,15 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #endif
     // Optical depth of a texel of a ray at right angles to the light.
     let across = extinction * slice.radius_max / width;
+    let reference_step = across / slice.reference;
 #ifdef COLORS
-    var visibility = filtered_colors(row_ray, prefix_column(texels, 0.0));
+    var visibility = prefix_colors(prefix(row_ray, 0.0, texels, reference_step), row_ray.depth);
 #else ifdef REGIONS
-    var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
+    var visibility = mean_visibility(row_ray, reference_step, across / max(ray.sine, 1e-6));
 #else ifdef NEAR_PLANE
-    var visibility = mean_visibility(row_ray, across / slice.reference, across / max(ray.sine, 1e-6));
+    var visibility = mean_visibility(row_ray, reference_step, across / max(ray.sine, 1e-6));
 #else
-    var visibility = filtered_series(row_ray, prefix_column(texels, 0.0));
+    var visibility = prefix_visibility(prefix(row_ray, 0.0, texels, reference_step), row_ray.depth);
 #endif
 #ifndef COLORS
     visibility = clamp(visibility, 0.0, 1.0);
@@ -226,10 +148,10 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
     let direction = perspective_ray(camera, ndc).direction;
 #ifdef PER_POINT
-    let marched = marched_light(camera.eye, direction, vec2<f32>(near, ray.distance), extinction, steps, 0.5);
+    let marched = marched_light(light, camera.eye, direction, vec2<f32>(near, ray.distance), extinction, steps, 0.5);
 #else
-    let marched = vec3<f32>(march_shadow_map(
-        shadow_map, light, camera.eye + near * direction, direction, ray.distance - near, extinction, steps, 0.5
+    let marched = vec3<f32>(marched_visibility(
+        light, camera.eye + near * direction, direction, ray.distance - near, extinction, steps, 0.5
     ));
 #endif
 #ifdef COLORS

@@ -33,22 +33,20 @@
 
 #import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel}
 #import airlight::core::finite::finite_or
-#import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
-#import airlight::core::phase::henyey_greenstein
+#import airlight::core::light::Light
 #import airlight::core::picture::picture_corner
-#import airlight::core::shadow_views::{ShadowViews, view_position}
 #import airlight::scattering::local_light::{
     distance_to_light, local_slice_from_texel, ray_bounds, light_angle, columns_covered, distance_from_light_angle,
-    local_ray, airlight, local_in_scattered, equal_angle, along_from_equal_angle, path_through_air, cosine_to_light
+    local_ray, airlight, local_in_scattered
 }
+#ifdef EPIPOLE_MARCH
+#import airlight::scattering::lit::marched_local_light
+#endif
+#import airlight::scattering::prefiltered::{Prefix, map_size, prefix_visibility, prefix_colors}
 #import airlight::scattering::rectify::{
     Frame, epipolar_ray, nearest_row, depth_from_ray, warped_depth
 }
-#import airlight::scattering::rows::{RowRay, prefix_column}
-#import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, lit_by_shadow}
-#import airlight::scattering::visibility_fourier::{
-    fourier_visibility, fourier_visibility_nearest, fourier_colors, fourier_colors_nearest
-}
+#import airlight::scattering::rows::RowRay
 #import airlight::scattering::single_scatter::Medium
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -57,104 +55,12 @@
 @group(#{GROUP}) @binding(3) var<uniform> frame: Frame;
 @group(#{GROUP}) @binding(4) var slices: texture_2d<f32>;
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
-#ifdef EPIPOLE_MARCH
-#ifdef SHADOW_ARRAY
-@group(#{GROUP}) @binding(6) var shadow_maps: texture_2d_array<f32>;
-@group(#{GROUP}) @binding(10) var<uniform> shadow_views: ShadowViews;
-#else
-@group(#{GROUP}) @binding(6) var shadow_map: texture_2d<f32>;
-#endif
-#ifdef LIGHT_TEXTURE
-@group(#{GROUP}) @binding(11) var light_texture: texture_2d<f32>;
-@group(#{GROUP}) @binding(12) var light_sampler: sampler;
-#endif
-#endif
-@group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
-#ifndef NEAREST
-@group(#{GROUP}) @binding(8) var bases_sampler: sampler;
-#endif
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
-
-const LAYERS: u32 = u32(#{BASES}) / 4u;
-
-#ifdef LANCZOS
-const WINDOWED: bool = true;
-#else
-const WINDOWED: bool = false;
-#endif
 
 /// Rays that cover fewer texels are marched.
 const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
-
-#ifdef COLORS
-/// Mean of visibility times fall-off of a ray for each colour, read at `column` of its row, in texels.
-fn filtered_colors(ray: RowRay, column: f32) -> vec3<f32> {
-    let size = vec2<f32>(textureDimensions(bases).xy);
-#ifdef NEAREST
-    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
-    return fourier_colors_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
-#else
-    let place = vec2<f32>(column, ray.row + 0.5) / size;
-    return fourier_colors(bases, bases_sampler, place, ray.depth, LAYERS, u32(#{COLORS}), WINDOWED);
-#endif
-}
-#else
-/// The filtered series of a ray, read at `column` of its row, in texels.
-fn filtered_series(ray: RowRay, column: f32) -> f32 {
-    let size = vec2<f32>(textureDimensions(bases).xy);
-#ifdef NEAREST
-    let place = clamp(vec2<f32>(column, f32(nearest_row(frame, ray.row))), vec2<f32>(0.0), size - 1.0);
-    return fourier_visibility_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, WINDOWED);
-#else
-    let place = vec2<f32>(column, ray.row + 0.5) / size;
-    return fourier_visibility(bases, bases_sampler, place, ray.depth, LAYERS, WINDOWED);
-#endif
-}
-#endif
-
-#ifdef EPIPOLE_MARCH
-/// Visibility, 0 or 1, times fall-off and light texture at a point in the world, metres.
-fn lit_at(point: vec3<f32>) -> vec3<f32> {
-#ifdef SHADOW_ARRAY
-    let place = view_position(shadow_views, vec2<f32>(textureDimensions(shadow_maps)), point);
-    let visibility = lit_by_shadow(shadow_in_view(shadow_maps, place, light.far_depth), light.far_depth);
-#else
-    let visibility = lit_by_shadow(shadow_in_map(shadow_map, light, point), light.far_depth);
-#endif
-    let lit = vec3<f32>(visibility * angular_falloff(light, direction_to_light(light, point)));
-#ifdef LIGHT_TEXTURE
-    return lit * light_texture_color(light, light_texture, light_sampler, point);
-#else
-    return lit;
-#endif
-}
-
-/// Mean of `lit_at` over a view ray between two distances in metres, by steps of equal angle at the light; weighted by phase
-/// function and transmittance, unless `extinction` is zero. `cosine`, `sine`: of the ray's angle to the light.
-fn marched_light(
-    origin: vec3<f32>, direction: vec3<f32>, away: f32, cosine: f32, sine: f32, span: vec2<f32>, extinction: f32,
-    steps: u32, offset: f32
-) -> vec3<f32> {
-    let ray = local_ray(away, cosine, sine, light.radius);
-    let from_angle = equal_angle(ray, span.x);
-    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(steps, 1u));
-    // Weights in units of the first step's: finite however deep the stretch lies.
-    let first = path_through_air(ray, along_from_equal_angle(ray, from_angle + stride * offset));
-    var sum = vec3<f32>(0.0);
-    var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
-        let along = along_from_equal_angle(ray, from_angle + stride * (f32(done) + offset));
-        let phase = henyey_greenstein(cosine_to_light(ray, along), medium.g);
-        let air = exp(-clamp(extinction * (path_through_air(ray, along) - first), 0.0, 80.0));
-        let weight = select(1.0, phase * air, extinction > 0.0);
-        sum += weight * lit_at(origin + along * direction);
-        total += weight;
-    }
-    return sum / max(total, 1e-30);
-}
-#endif
 
 /// Radiance, and mean visibility in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
@@ -162,17 +68,18 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
     let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
     let slice = local_slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
-    let width = f32(textureDimensions(bases).x);
+    let width = f32(map_size().x);
     let away = distance_to_light(frame, light.position);
     let texels = width * columns_covered(slice, light_angle(away, ray.cosine, ray.sine, ray.distance));
     var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(ray_bounds(slice), ray));
 #ifdef DEPTH_WARP
     row_ray.depth = warped_depth(row_ray.depth);
 #endif
+    let prefix = Prefix(ray.row, frame.wraps, 0.0, texels, 0.0);
 #ifdef COLORS
-    var lit = filtered_colors(row_ray, prefix_column(texels, 0.0));
+    var lit = prefix_colors(prefix, row_ray.depth);
 #else
-    var lit = vec3<f32>(clamp(filtered_series(row_ray, prefix_column(texels, 0.0)), 0.0, 1.0));
+    var lit = vec3<f32>(clamp(prefix_visibility(prefix, row_ray.depth), 0.0, 1.0));
 #endif
     // The stretch of the ray between the least and the greatest light angle of the slice.
     let span = vec2<f32>(
@@ -188,8 +95,9 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
     // A ray that ends before it comes into the light has nothing to march.
     let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0 && span.y > span.x);
-    let marched = marched_light(
-        camera.eye, perspective_ray(camera, ndc).direction, away, ray.cosine, ray.sine, span, extinction, steps, 0.5
+    let direction = perspective_ray(camera, ndc).direction;
+    let marched = marched_local_light(
+        light, medium.g, camera.eye, direction, away, ray.cosine, ray.sine, span, extinction, steps, 0.5
     );
     lit = mix(lit, marched, near_epipole);
 #endif

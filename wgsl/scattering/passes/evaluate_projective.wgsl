@@ -22,12 +22,12 @@
 #import airlight::core::finite::finite_or
 #import airlight::core::light::Light
 #import airlight::core::picture::picture_corner
+#import airlight::scattering::prefiltered::{Prefix, map_size, prefix_visibility}
 #import airlight::scattering::projective::{
     ProjectiveRows, ProjectiveRay, projective_ray, reference_reach, column_from_x, x_from_column, texel_begin,
     filtered_column, stretch_weight
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin}
-#import airlight::scattering::visibility_fourier::{fourier_visibility, fourier_visibility_nearest}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -35,40 +35,23 @@
 @group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
 @group(#{GROUP}) @binding(10) var<uniform> rows: ProjectiveRows;
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
-@group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
-#ifndef NEAREST
-@group(#{GROUP}) @binding(8) var bases_sampler: sampler;
-#endif
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
 
-const LAYERS: u32 = u32(#{BASES}) / 4u;
 #ifdef REGIONS
 const ROW_REGIONS: u32 = u32(#{REGIONS});
 #else
 const ROW_REGIONS: u32 = 1u;
 #endif
 
-#ifdef LANCZOS
-const WINDOWED: bool = true;
-#else
-const WINDOWED: bool = false;
-#endif
-
-/// The filtered series of a ray, read at `column` of its row, in texels.
-fn filtered_series(ray: RowRay, column: f32) -> f32 {
-    let size = vec2<f32>(textureDimensions(bases).xy);
-#ifdef NEAREST
-    let place = clamp(vec2<f32>(column, floor(ray.row + 0.5)), vec2<f32>(0.0), size - 1.0);
-    return fourier_visibility_nearest(bases, vec2<u32>(place), ray.depth, LAYERS, WINDOWED);
-#else
-    let place = vec2<f32>(column, ray.row + 0.5) / size;
-    return fourier_visibility(bases, bases_sampler, place, ray.depth, LAYERS, WINDOWED);
-#endif
+/// The mean that a region of a row holds for `column`, whose neighbours are interpolated linearly.
+fn filtered_mean(ray: RowRay, first: u32, column: f32) -> f32 {
+    // A stretch is read half a texel before its end.
+    return prefix_visibility(Prefix(ray.row, 0.0, f32(first), column + 0.5, 0.0), ray.depth);
 }
 
 /// Mean visibility of a view ray between its ends. `row_ray`: the same in columns; `extinction` in 1/m, 0 for plain means.
 fn projective_visibility(along: ProjectiveRay, row_ray: RowRay, extinction: f32) -> f32 {
-    let size = textureDimensions(bases);
+    let size = map_size();
     let width = f32(size.x);
     let reach = reference_reach(rows, f32(size.y), row_ray.row);
     let first = region_of(row_ray.begin, size.x, ROW_REGIONS);
@@ -83,12 +66,13 @@ fn projective_visibility(along: ProjectiveRay, row_ray: RowRay, extinction: f32)
         if region < last {
             to_x = max(texel_begin(rows, width, region_begin(region + 1u, size.x, ROW_REGIONS)), from_x);
         }
-        var mean = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, to_x));
+        var mean = filtered_mean(row_ray, column, filtered_column(rows, width, reach, extinction, column, to_x));
 #ifdef NEAR_PLANE
         if from_x > start {
             let whole = stretch_weight(extinction, (to_x - start) * reach);
             let before = stretch_weight(extinction, (from_x - start) * reach);
-            let skipped = filtered_series(row_ray, filtered_column(rows, width, reach, extinction, column, from_x));
+            let filtered = filtered_column(rows, width, reach, extinction, column, from_x);
+            let skipped = filtered_mean(row_ray, column, filtered);
             mean = clamp((mean * whole - skipped * before) / max(whole - before, 1e-6 * whole + 1e-30), 0.0, 1.0);
         }
 #endif
@@ -110,11 +94,11 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #else
     let extinction = medium.extinction;
 #endif
-    let width = f32(textureDimensions(bases).x);
+    let width = f32(map_size().x);
     let ray = view_ray(camera, ndc);
     let distance = distance_from_depth(camera, ray, ndc, surface, medium.distance_limit);
     let cosine = dot(ray.direction, light.direction);
-    var along = projective_ray(rows, f32(textureDimensions(bases).y), ray.origin, ray.direction, distance);
+    var along = projective_ray(rows, f32(map_size().y), ray.origin, ray.direction, distance);
 #ifdef NEAR_PLANE
     // An orthographic ray begins there anyway.
     let near = distance_from_depth(camera, ray, ndc, camera.near_depth, distance);

@@ -21,15 +21,12 @@
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
 #import airlight::core::finite::finite_or
-#import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
+#import airlight::core::light::Light
 #import airlight::core::picture::picture_corner
-#import airlight::core::phase::henyey_greenstein
-#import airlight::core::shadow_views::{ShadowViews, view_position}
+#import airlight::scattering::lit::{marched_light, marched_local_light}
 #import airlight::scattering::local_light::{
-    place_of_light, local_ray, airlight, local_in_scattered, equal_angle, along_from_equal_angle,
-    path_through_air, cosine_to_light
+    place_of_light, local_ray, airlight, local_in_scattered
 }
-#import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, lit_by_shadow}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 struct MarchParameters {
@@ -46,77 +43,8 @@ struct MarchParameters {
 @group(#{GROUP}) @binding(1) var<uniform> light: Light;
 @group(#{GROUP}) @binding(2) var<uniform> medium: Medium;
 @group(#{GROUP}) @binding(5) var depth: texture_2d<f32>;
-#ifdef SHADOW_ARRAY
-@group(#{GROUP}) @binding(7) var shadow_maps: texture_2d_array<f32>;
-@group(#{GROUP}) @binding(10) var<uniform> shadow_views: ShadowViews;
-#else
-@group(#{GROUP}) @binding(7) var shadow_map: texture_2d<f32>;
-#endif
 @group(#{GROUP}) @binding(8) var<uniform> parameters: MarchParameters;
 @group(#{GROUP}) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
-#ifdef LIGHT_TEXTURE
-@group(#{GROUP}) @binding(11) var light_texture: texture_2d<f32>;
-@group(#{GROUP}) @binding(12) var light_sampler: sampler;
-#endif
-
-/// Visibility, 0 or 1, times fall-off and light texture at a point in the world, metres.
-fn lit_at(point: vec3<f32>) -> vec3<f32> {
-#ifdef SHADOW_ARRAY
-    let place = view_position(shadow_views, vec2<f32>(textureDimensions(shadow_maps)), point);
-    let visibility = lit_by_shadow(shadow_in_view(shadow_maps, place, light.far_depth), light.far_depth);
-#else
-    let visibility = lit_by_shadow(shadow_in_map(shadow_map, light, point), light.far_depth);
-#endif
-    let lit = vec3<f32>(visibility * angular_falloff(light, direction_to_light(light, point)));
-#ifdef LIGHT_TEXTURE
-    return lit * light_texture_color(light, light_texture, light_sampler, point);
-#else
-    return lit;
-#endif
-}
-
-#ifdef LOCAL
-/// Mean of `lit_at` over a view ray between two distances in metres, by steps of equal angle at the light; weighted by phase
-/// function and transmittance, unless `extinction` is zero. `cosine`, `sine`: of the ray's angle to the light.
-fn marched_light(
-    origin: vec3<f32>, direction: vec3<f32>, away: f32, cosine: f32, sine: f32, span: vec2<f32>, extinction: f32,
-    steps: u32, offset: f32
-) -> vec3<f32> {
-    let ray = local_ray(away, cosine, sine, light.radius);
-    let from_angle = equal_angle(ray, span.x);
-    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(steps, 1u));
-    // Weights in units of the first step's: finite however deep the stretch lies.
-    let first = path_through_air(ray, along_from_equal_angle(ray, from_angle + stride * offset));
-    var sum = vec3<f32>(0.0);
-    var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
-        let along = along_from_equal_angle(ray, from_angle + stride * (f32(done) + offset));
-        let phase = henyey_greenstein(cosine_to_light(ray, along), medium.g);
-        let air = exp(-clamp(extinction * (path_through_air(ray, along) - first), 0.0, 80.0));
-        let weight = select(1.0, phase * air, extinction > 0.0);
-        sum += weight * lit_at(origin + along * direction);
-        total += weight;
-    }
-    return sum / max(total, 1e-30);
-}
-#else
-/// Mean of `lit_at` over a view ray between two distances in metres, by equal steps, weighted by transmittance.
-fn marched_light(
-    origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
-) -> vec3<f32> {
-    let stride = (span.y - span.x) / f32(max(steps, 1u));
-    var sum = vec3<f32>(0.0);
-    var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
-        let along = stride * (f32(done) + offset);
-        let weight = exp(-min(extinction * stride * f32(done), 80.0));
-        sum += weight * lit_at(origin + (span.x + along) * direction);
-        total += weight;
-    }
-    return sum / max(total, 1.0);
-}
-#endif
-
 /// Radiance, and mean visibility times fall-off in alpha, of a pixel.
 fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
@@ -134,13 +62,13 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let place = place_of_light(light.position, ray.origin, ray.direction);
     let cosine = dot(ray.direction, place.xyz);
     let sine = length(cross(ray.direction, place.xyz));
-    let lit = marched_light(
-        ray.origin, ray.direction, place.w, cosine, sine, span, extinction, steps, parameters.offset
+    let lit = marched_local_light(
+        light, medium.g, ray.origin, ray.direction, place.w, cosine, sine, span, extinction, steps, parameters.offset
     );
     let integral = airlight(local_ray(place.w, cosine, sine, light.radius), medium.extinction, medium.g, 0.0, distance);
     let radiance = local_in_scattered(medium, light.radiance, integral, lit);
 #else
-    let lit = marched_light(ray.origin, ray.direction, span, extinction, steps, parameters.offset);
+    let lit = marched_light(light, ray.origin, ray.direction, span, extinction, steps, parameters.offset);
     let cosine = dot(ray.direction, light.direction);
     let radiance = lit * in_scattered(medium, light.radiance, cosine, distance, 1.0);
 #endif

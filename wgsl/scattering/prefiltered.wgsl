@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::scattering::prefiltered
+// summary: Callback: mean visibility of a stretch of a row, by whichever method the pass was built for.
+// source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4; visibility_rank and visibility_moments for the others.
+// note: Unlike algorithm modules a callback holds bindings, those that passes share. All methods answer the same question:
+// note: which share of the first texels of a row is lit at the depth of a ray.
+// note: Definitions: RANK, MOMENTS or neither for Fourier bases; BASES, LANCZOS, NEAREST and COLORS as in the passes.
+
+#import airlight::scattering::rows::prefix_column
+#import airlight::scattering::visibility_fourier::{
+    fourier_visibility, fourier_visibility_nearest, fourier_colors, fourier_colors_nearest
+}
+#import airlight::scattering::visibility_moments::{moments_visibility, moments_visibility_nearest}
+#import airlight::scattering::visibility_rank::{rank_visibility, rank_visibility_weighted}
+
+#ifdef RANK
+@group(#{GROUP}) @binding(7) var rank_cells: texture_2d<u32>;
+@group(#{GROUP}) @binding(8) var rank_starts: texture_2d<u32>;
+@group(#{GROUP}) @binding(13) var rank_planes: texture_2d_array<u32>;
+@group(#{GROUP}) @binding(14) var rectified: texture_2d<f32>;
+const RANK_BITS: u32 = u32(#{RANK});
+#else ifdef MOMENTS
+@group(#{GROUP}) @binding(7) var moments: texture_2d<u32>;
+#else
+@group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
+#ifndef NEAREST
+@group(#{GROUP}) @binding(8) var bases_sampler: sampler;
+#endif
+#ifdef BASES
+const LAYERS: u32 = u32(#{BASES}) / 4u;
+#else
+const LAYERS: u32 = 8u;
+#endif
+#ifdef LANCZOS
+const WINDOWED: bool = true;
+#else
+const WINDOWED: bool = false;
+#endif
+#endif
+
+/// The stretch of a row from the texel at which a region begins.
+struct Prefix {
+    /// Row, fractional; row j is at the value j.
+    row: f32,
+    /// 1 where the row after the last is the first, else 0.
+    wraps: f32,
+    /// First texel of the region.
+    first: f32,
+    /// Where the stretch ends, texels from the start of the row, fractional.
+    texels: f32,
+    /// Optical depth of a texel by which what was stored is weighted; 0 for plain means.
+    optical_step: f32,
+}
+
+/// Columns and rows of the rectified map.
+fn map_size() -> vec2<u32> {
+#ifdef RANK
+    return textureDimensions(rectified);
+#else ifdef MOMENTS
+    return textureDimensions(moments);
+#else
+    return textureDimensions(bases).xy;
+#endif
+}
+
+/// The row nearest to that of a stretch, always inside the map.
+fn prefix_row(at: Prefix) -> u32 {
+    let rows = map_size().y;
+    let nearest = u32(max(at.row, 0.0) + 0.5);
+    // Half a row beyond the last is the first, where rows wrap.
+    return select(min(nearest, rows - 1u), 0u, nearest >= rows && at.wraps > 0.0);
+}
+
+#ifdef RANK
+/// Mean visibility of the stretch in a whole `row`, 0..1.
+fn row_visibility(at: Prefix, row: u32, depth: f32) -> f32 {
+    let columns = map_size().x;
+#ifdef AVERAGE
+    return rank_visibility(rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth);
+#else
+    return rank_visibility_weighted(
+        rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth, at.optical_step
+    );
+#endif
+}
+
+/// Mean visibility of a stretch at the depth of a ray, 0..1.
+fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
+#ifdef NEAREST
+    return row_visibility(at, prefix_row(at), depth);
+#else
+    let rows = map_size().y;
+    let whole = min(u32(max(at.row, 0.0)), rows - 1u);
+    let next = select(min(whole + 1u, rows - 1u), 0u, whole + 1u >= rows && at.wraps > 0.0);
+    let share = clamp(at.row - f32(whole), 0.0, 1.0);
+    return mix(row_visibility(at, whole, depth), row_visibility(at, next, depth), share);
+#endif
+}
+#else ifdef MOMENTS
+/// Mean visibility of a stretch at the depth of a ray, 0..1.
+fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
+    let column = prefix_column(at.texels, at.first);
+#ifdef NEAREST
+    let place = min(vec2<u32>(u32(column), prefix_row(at)), map_size() - 1u);
+    return moments_visibility_nearest(moments, place, depth);
+#else
+    return moments_visibility(moments, vec2<f32>(column, at.row), at.wraps > 0.0, depth);
+#endif
+}
+#else
+/// Mean visibility of a stretch at the depth of a ray; not clamped: the series overshoots.
+fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
+    let column = prefix_column(at.texels, at.first);
+#ifdef NEAREST
+    let place = min(vec2<u32>(u32(column), prefix_row(at)), map_size() - 1u);
+    return fourier_visibility_nearest(bases, place, depth, LAYERS, WINDOWED);
+#else
+    let place = vec2<f32>(column, at.row + 0.5) / vec2<f32>(map_size());
+    return fourier_visibility(bases, bases_sampler, place, depth, LAYERS, WINDOWED);
+#endif
+}
+
+#ifdef COLORS
+/// Mean of visibility times fall-off of a stretch at the depth of a ray, for each colour.
+fn prefix_colors(at: Prefix, depth: f32) -> vec3<f32> {
+    let column = prefix_column(at.texels, at.first);
+#ifdef NEAREST
+    let place = min(vec2<u32>(u32(column), prefix_row(at)), map_size() - 1u);
+    return fourier_colors_nearest(bases, place, depth, LAYERS, u32(#{COLORS}), WINDOWED);
+#else
+    let place = vec2<f32>(column, at.row + 0.5) / vec2<f32>(map_size());
+    return fourier_colors(bases, bases_sampler, place, depth, LAYERS, u32(#{COLORS}), WINDOWED);
+#endif
+}
+#endif
+#endif
