@@ -676,7 +676,7 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     const ROW: usize = 256;
     let pictures = [0, 1].map(|i| {
         let (method, map) = (&methods[i], &methods[i].rectification);
-        [&method.scattered, &marches[i].0.scattered, &map.rectified, &map.slices, &method.bases]
+        [&method.scattered, &marches[i].0.scattered, &map.rectified, &map.slices, method.prefilter.stored()]
     });
     let rows = pictures[0].map(|texture| (texture.size()[1] * texture.size()[2]) as usize);
     let stride = rows.iter().sum::<usize>() * ROW;

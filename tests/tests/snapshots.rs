@@ -63,7 +63,7 @@ fn check(scene_name: &str, scene: &TestScene) {
     assert_buffer(&name("slices"), &buffer(&map.slices, 0, 4, tolerance(1e-5, 1e-4, 0.0)));
     assert_buffer(&name("rectified"), &buffer(&map.rectified, 0, 1, tolerance(1e-4, 0.0, 0.03)));
     for layer in [0, 3] {
-        let bases = buffer(&method.bases, layer, 4, tolerance(4e-3, 0.0, 0.05));
+        let bases = buffer(method.prefilter.stored(), layer, 4, tolerance(4e-3, 0.0, 0.05));
         assert_buffer(&name(&format!("bases_{layer}")), &bases);
     }
     let scattered = tolerance(2e-3, 0.01, 0.05);

@@ -8,6 +8,7 @@ mod composite;
 mod light_form;
 mod march;
 mod medium;
+mod prefilter;
 mod prefiltered;
 mod projective;
 mod projective_map;
@@ -22,6 +23,7 @@ pub use composite::Composite;
 pub use light_form::LightForm;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
+pub use prefilter::{Prefilter, RANK_COLUMNS, Visibility};
 pub use prefiltered::{Prefiltered, PrefilteredBound};
 pub use projective::{
     Choice, OBLIQUENESS_LIMIT, Projective, ProjectiveError, ProjectiveRows, ProjectiveSplit, choose,

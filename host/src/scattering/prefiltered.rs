@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Light shafts by prefiltered bases (thesis 4.3).
+//! Light shafts by prefiltered visibility (thesis 4.3).
 
-use super::{Inputs, Rectification, ScatteringError, Settings, check_size, light_resources, picture_pass};
+use super::{
+    Inputs, Prefilter, Rectification, ScatteringError, Settings, check_size, light_resources, picture_pass,
+};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
 use crate::resource::{Sampler, Texture};
 use crate::shaders::Shaders;
 use wgpu::TextureFormat;
 
-/// Light shafts by prefiltered bases.
+/// Light shafts by prefiltered visibility.
 pub struct Prefiltered {
-    settings: Settings,
     /// The map that is filtered.
     pub rectification: Rectification,
-    filter_pass: Pass,
+    /// What the filter stores.
+    pub prefilter: Prefilter,
     evaluate_pass: Pass,
-    sampler: Sampler,
     light_sampler: Sampler,
-    /// Filtered bases, M/4 layers; with a fall-off those of each colour, and one of the mean fall-off.
-    pub bases: Texture,
     /// Radiance, and visibility in alpha.
     pub scattered: Texture,
 }
@@ -43,10 +42,6 @@ impl Prefiltered {
     ) -> Result<Self, ScatteringError> {
         settings.validate(gpu)?;
         check_size(gpu, "a picture", viewport)?;
-        let format = settings.format.texture_format();
-        let [width, height] = settings.map;
-        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        let filter = settings.filter_definitions();
         let evaluate = settings.evaluate_definitions();
         let (pass, entry) = if settings.light.local() {
             ("scattering/evaluate_local", "fragment_evaluate_local")
@@ -54,13 +49,10 @@ impl Prefiltered {
             ("scattering/evaluate", "fragment_evaluate")
         };
         Ok(Self {
-            settings,
             rectification: Rectification::from_settings(gpu, shaders, &settings)?,
-            filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
+            prefilter: Prefilter::new(gpu, shaders, &settings, false)?,
             evaluate_pass: picture_pass(gpu, shaders, pass, &evaluate, entry)?,
-            sampler: Sampler::rows(gpu),
             light_sampler: Sampler::linear(gpu),
-            bases: Texture::array(gpu, [width, height, settings.light.layers(settings.bases)], format, usage),
             scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
         })
     }
@@ -78,13 +70,12 @@ impl Prefiltered {
             ("slices", (&self.rectification.slices).into()),
             ("depth", inputs.depth.into()),
             ("rectified", (&self.rectification.rectified).into()),
-            ("bases", (&self.bases).into()),
-            ("bases_sampler", (&self.sampler).into()),
         ];
+        resources.extend(self.prefilter.resources());
         resources.extend(light_resources(inputs, &self.light_sampler));
         Ok(PrefilteredBound {
             rectification: self.rectification.bind(gpu, inputs)?,
-            filter: self.filter_pass.bind_known(gpu, &resources)?,
+            filter: self.prefilter.bind(gpu, &resources)?,
             evaluate: self.evaluate_pass.bind_known(gpu, &resources)?,
         })
     }
@@ -101,11 +92,9 @@ impl Prefiltered {
         self.rectification.record(encoder, &bound.rectification);
     }
 
-    /// Records the filter of the bases (thesis 4.3.3, Listings 4.1 to 4.3).
+    /// Records the filter of the map (thesis 4.3.3, Listings 4.1 to 4.3).
     pub fn record_filter(&self, encoder: &mut wgpu::CommandEncoder, bound: &PrefilteredBound) {
-        let Settings { bases, bases_per_thread, map, regions, .. } = self.settings;
-        let chunks = bases.div_ceil(bases_per_thread.min(bases));
-        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, regions]);
+        self.prefilter.record(encoder, &bound.filter);
     }
 
     /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).
@@ -115,6 +104,6 @@ impl Prefiltered {
 
     /// Bytes of the textures between shadow map and picture.
     pub fn memory(&self) -> u64 {
-        self.bases.memory() + self.rectification.rectified.memory() + self.rectification.slices.memory()
+        self.prefilter.memory() + self.rectification.rectified.memory() + self.rectification.slices.memory()
     }
 }

@@ -2,12 +2,12 @@
 //! Light shafts by prefiltered bases over a projectively rectified map (thesis 4.3 and 4.4.2).
 
 use super::{
-    Inputs, Projective, ProjectiveMap, ScatteringError, Settings, SettingsError, Start, check_size,
-    picture_pass,
+    Inputs, Prefilter, Projective, ProjectiveMap, ScatteringError, Settings, SettingsError, Start,
+    Visibility, check_size, picture_pass,
 };
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError};
-use crate::resource::{Sampler, Texture};
+use crate::resource::Texture;
 use crate::shaders::Shaders;
 use wgpu::TextureFormat;
 
@@ -17,11 +17,9 @@ pub struct ProjectivePrefiltered {
     /// The map that is filtered; [`Self::write`] takes its rows. A map that is drawn is drawn before
     /// [`Self::record`].
     pub map: ProjectiveMap,
-    filter_pass: Pass,
+    /// What the filter stores.
+    pub prefilter: Prefilter,
     evaluate_pass: Pass,
-    sampler: Sampler,
-    /// Filtered bases, M/4 layers.
-    pub bases: Texture,
     /// Radiance, and visibility in alpha.
     pub scattered: Texture,
 }
@@ -50,13 +48,15 @@ impl ProjectivePrefiltered {
         let settings = Settings { map: [width, height], ..settings };
         settings.validate(gpu)?;
         check_size(gpu, "a picture", viewport)?;
-        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        let filter = settings.filter_definitions().flag("PROJECTIVE");
+        if settings.visibility != Visibility::Fourier {
+            let method = settings.visibility.name();
+            return Err(SettingsError::Visibility { method, reason: "epipolar rows" }.into());
+        }
         let evaluate = settings.projective_definitions();
         Ok(Self {
             settings,
             map,
-            filter_pass: Pass::compute_with(gpu, shaders, "scattering/filter", &filter)?,
+            prefilter: Prefilter::new(gpu, shaders, &settings, true)?,
             evaluate_pass: picture_pass(
                 gpu,
                 shaders,
@@ -64,13 +64,6 @@ impl ProjectivePrefiltered {
                 &evaluate,
                 "fragment_evaluate_projective",
             )?,
-            sampler: Sampler::rows(gpu),
-            bases: Texture::array(
-                gpu,
-                [width, height, settings.bases / 4],
-                settings.format.texture_format(),
-                usage,
-            ),
             scattered: Texture::target(gpu, viewport, TextureFormat::Rgba16Float),
         })
     }
@@ -92,7 +85,7 @@ impl ProjectivePrefiltered {
     /// # Errors
     /// [`PassError`].
     pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<ProjectivePrefilteredBound, PassError> {
-        let resources = [
+        let mut resources = vec![
             ("camera", inputs.camera.into()),
             ("light", inputs.light.into()),
             ("medium", inputs.medium.into()),
@@ -100,12 +93,11 @@ impl ProjectivePrefiltered {
             ("depth", inputs.depth.into()),
             ("shadow_map", inputs.shadow_map.into()),
             ("rectified", (&self.map.rectified).into()),
-            ("bases", (&self.bases).into()),
-            ("bases_sampler", (&self.sampler).into()),
         ];
+        resources.extend(self.prefilter.resources());
         Ok(ProjectivePrefilteredBound {
             resample: self.map.bind(gpu, inputs)?,
-            filter: self.filter_pass.bind_known(gpu, &resources)?,
+            filter: self.prefilter.bind(gpu, &resources)?,
             evaluate: self.evaluate_pass.bind_known(gpu, &resources)?,
         })
     }
@@ -119,9 +111,7 @@ impl ProjectivePrefiltered {
 
     /// Records the filter of the bases (thesis 4.3.3, Listings 4.1 to 4.3).
     pub fn record_filter(&self, encoder: &mut wgpu::CommandEncoder, bound: &ProjectivePrefilteredBound) {
-        let Settings { bases, bases_per_thread, map, regions, .. } = self.settings;
-        let chunks = bases.div_ceil(bases_per_thread.min(bases));
-        self.filter_pass.dispatch(encoder, &bound.filter, [map[1], chunks, regions]);
+        self.prefilter.record(encoder, &bound.filter);
     }
 
     /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).

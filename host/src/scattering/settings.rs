@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What the prefiltered method can be told, and what is impossible.
 
-use super::LightForm;
+use super::{LightForm, Visibility};
 use crate::core::Camera;
 use crate::gpu::Gpu;
 use crate::pass::PassError;
@@ -17,6 +17,17 @@ pub enum SettingsError {
     /// Bases a thread.
     #[error("{0} bases a thread are impossible: the number must be a multiple of 4 from 4 to 128")]
     BasesPerThread(u32),
+    /// Bits of a depth in a rank structure.
+    #[error("{0} bits a depth are impossible: the number must be from 8 to 12")]
+    RankBits(u32),
+    /// What a method of prefiltering cannot do.
+    #[error("the method `{method}` needs {reason}; `fourier` does without")]
+    Visibility {
+        /// The method.
+        method: &'static str,
+        /// What it needs.
+        reason: &'static str,
+    },
     /// Regions of a row.
     #[error("{0} regions a row are impossible: the number must be from 1 to 8")]
     Regions(u32),
@@ -81,15 +92,6 @@ pub enum BasisFormat {
     Rgba16Float,
 }
 
-impl BasisFormat {
-    pub(super) fn texture_format(self) -> wgpu::TextureFormat {
-        match self {
-            Self::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
-            Self::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
-        }
-    }
-}
-
 /// How the visibility along a ray is averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Weighting {
@@ -133,6 +135,9 @@ pub enum Start {
 /// What the prefiltered method can be told.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
+    /// How visibility is prefiltered; `bases`, `format`, `window`, `bases_per_thread`, `regions` and `direct_sines` are of
+    /// Fourier bases alone.
+    pub visibility: Visibility,
     /// Number M of bases, a multiple of 4 from 4 to 128.
     pub bases: u32,
     /// Columns and rows of the rectified map.
@@ -166,6 +171,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            visibility: Visibility::default(),
             bases: 32,
             map: [1024, 1024],
             format: BasisFormat::default(),
@@ -218,6 +224,7 @@ impl Settings {
                 "rows of a spot, a point light or a light texture are filtered in one region, from the eye on",
             ));
         }
+        self.validate_visibility()?;
         check_size(gpu, "a rectified map", self.map)
     }
 
@@ -242,16 +249,14 @@ impl Settings {
 
     pub(super) fn evaluate_definitions(&self) -> Definitions {
         let definitions = flags(&[
-            // Below 8 bases the window widens the edge by more than the ringing that it takes away.
-            ("LANCZOS", self.window && self.bases >= 8),
             ("EPIPOLE_MARCH", self.epipole_march),
             ("DEPTH_WARP", self.depth_warp),
             ("AVERAGE", self.weighting == Weighting::Average),
             ("NEAREST", self.filtering == Filtering::Nearest),
             ("NEAR_PLANE", self.start == Start::NearPlane),
             ("PER_POINT", self.epipole_march && !self.light.plain()),
-        ])
-        .set("BASES", self.bases as i32);
+        ]);
+        let definitions = self.prefiltered_definitions(definitions);
         self.with_regions(self.light.color_definitions(self.light.shadow_definitions(definitions)))
     }
 

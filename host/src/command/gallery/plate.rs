@@ -31,7 +31,7 @@ pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, Com
     for (file, caption, grey) in [
         ("shadow_map.png", caption, plates::depth(gpu, shadow_map)?),
         ("rectified.png", "Rectified map", plates::depth(gpu, &shot.rectified)?),
-        ("bases.png", "Filtered bases 1, 5, 9 and so on", plates::bases(gpu, &shot.bases)?),
+        ("bases.png", "Filtered bases 1, 5, 9 and so on", plates::bases(gpu, shot.prefilter.stored())?),
     ] {
         album.add(file, caption, [grey.width, grey.height], &grey.pixels)?;
     }

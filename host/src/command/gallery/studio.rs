@@ -5,7 +5,7 @@ use crate::command::CommandError;
 use crate::command::bench::{Work, milliseconds};
 use crate::core::{DIRECTIONAL, Raster, Tonemap, View};
 use crate::scattering::{
-    BasisFormat, Choice, Composite, Filtering, LightForm, March, Prefiltered, ProjectiveMap,
+    BasisFormat, Choice, Composite, Filtering, LightForm, March, Prefilter, Prefiltered, ProjectiveMap,
     ProjectivePrefiltered, Settings, Start, Weighting, choose, epipole_near_picture,
 };
 use crate::scenes::{self, Scene};
@@ -40,8 +40,8 @@ pub struct Shot {
     pub scattered: Texture,
     /// The rectified map.
     pub rectified: Texture,
-    /// The filtered bases.
-    pub bases: Texture,
+    /// What the filter stored.
+    pub prefilter: Prefilter,
     /// What the rows of the map are, and their number and that of the bases.
     pub rows: String,
     /// Step, and milliseconds.
@@ -94,9 +94,9 @@ impl Studio {
             ("filter", self.time(&|encoder| prefiltered.record_filter(encoder, &bound))?),
             ("evaluation", self.time(&|encoder| prefiltered.record_evaluation(encoder, &bound))?),
         ];
-        let Prefiltered { rectification, bases, scattered, .. } = prefiltered;
-        let rows = rows("epipolar rows", settings, &bases);
-        Ok(Shot { scattered, rectified: rectification.rectified, bases, rows, times })
+        let Prefiltered { rectification, prefilter, scattered, .. } = prefiltered;
+        let rows = rows("epipolar rows", settings, prefilter.stored());
+        Ok(Shot { scattered, rectified: rectification.rectified, prefilter, rows, times })
     }
 
     fn projective(&self, stage: &Stage, settings: Settings) -> Result<Shot, CommandError> {
@@ -119,9 +119,9 @@ impl Studio {
             ("filter", self.time(&|encoder| prefiltered.record_filter(encoder, &bound))?),
             ("evaluation", self.time(&|encoder| prefiltered.record_evaluation(encoder, &bound))?),
         ];
-        let ProjectivePrefiltered { map, bases, scattered, .. } = prefiltered;
-        let rows = rows("projective rows", settings, &bases);
-        Ok(Shot { scattered, rectified: map.rectified, bases, rows, times })
+        let ProjectivePrefiltered { map, prefilter, scattered, .. } = prefiltered;
+        let rows = rows("projective rows", settings, prefilter.stored());
+        Ok(Shot { scattered, rectified: map.rectified, prefilter, rows, times })
     }
 
     /// The same light step by step through the shadow maps, and milliseconds.

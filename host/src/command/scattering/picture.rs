@@ -33,12 +33,12 @@ impl Buffers {
             ViewPasses::Epipolar(passes) => {
                 self.texture(gpu, &named("slices"), &passes.rectification.slices)?;
                 self.texture(gpu, &named("rectified"), &passes.rectification.rectified)?;
-                self.texture(gpu, &named("bases"), &passes.bases)?;
+                self.texture(gpu, &named("bases"), passes.prefilter.stored())?;
                 ("frame", passes.rectification.frame.read_floats(gpu)?)
             }
             ViewPasses::Projective(passes) => {
                 self.texture(gpu, &named("rectified"), &passes.map.rectified)?;
-                self.texture(gpu, &named("bases"), &passes.bases)?;
+                self.texture(gpu, &named("bases"), passes.prefilter.stored())?;
                 ("rows", passes.map.rows.read_floats(gpu)?)
             }
             ViewPasses::March { .. } => return self.texture(gpu, &named("scattered"), view.scattered()),

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What a filter stores of every row, and the pass that does it: the part that methods differ in.
+
+use super::{BasisFormat, Settings, SettingsError, Weighting};
+use crate::gpu::Gpu;
+use crate::pass::{Bound, Pass, PassError, Resource};
+use crate::resource::{Sampler, Texture};
+use crate::shaders::Shaders;
+use airlight_validate::Definitions;
+use wgpu::{TextureFormat, TextureUsages};
+
+/// How visibility is prefiltered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Visibility {
+    /// Fourier bases: any light, any rows; edges as soft as the bases are few.
+    #[default]
+    Fourier,
+    /// Six moments: the least memory of the soft ones; a plain directional light over epipolar rows.
+    Moments,
+    /// Rank queries: exact for depths of so many bits, 8 to 12; a plain directional light over epipolar rows.
+    Rank {
+        /// Bits of a depth.
+        bits: u32,
+    },
+}
+
+impl Visibility {
+    /// Its name at the command.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fourier => "fourier",
+            Self::Moments => "moments",
+            Self::Rank { .. } => "rank",
+        }
+    }
+}
+
+/// Columns of the widest row that a rank structure takes.
+pub const RANK_COLUMNS: u32 = 2048;
+
+impl Settings {
+    /// Checks that there is a filter for these settings.
+    pub(super) fn validate_visibility(&self) -> Result<(), SettingsError> {
+        if self.visibility == Visibility::Fourier {
+            return Ok(());
+        }
+        let method = self.visibility.name();
+        if self.light.colors().is_some() || self.light.local() {
+            return Err(SettingsError::Visibility { method, reason: "a plain directional light" });
+        }
+        if self.regions > 1 {
+            return Err(SettingsError::Visibility { method, reason: "rows in one region" });
+        }
+        if let Visibility::Rank { bits } = self.visibility {
+            if !(8..=12).contains(&bits) {
+                return Err(SettingsError::RankBits(bits));
+            }
+            if self.map[0] > RANK_COLUMNS {
+                return Err(SettingsError::Visibility { method, reason: "maps of at most 2048 columns" });
+            }
+        }
+        Ok(())
+    }
+
+    /// What the callback `scattering/prefiltered` reads of the settings.
+    pub(super) fn prefiltered_definitions(&self, definitions: Definitions) -> Definitions {
+        match self.visibility {
+            Visibility::Fourier => {
+                // Below 8 bases the window widens the edge by more than the ringing that it takes away.
+                let window = self.window && self.bases >= 8;
+                let definitions = if window { definitions.flag("LANCZOS") } else { definitions };
+                definitions.set("BASES", self.bases as i32)
+            }
+            Visibility::Moments => definitions.flag("MOMENTS"),
+            Visibility::Rank { bits } => definitions.set("RANK", bits as i32),
+        }
+    }
+
+    fn average(&self, definitions: Definitions) -> Definitions {
+        if self.weighting == Weighting::Average { definitions.flag("AVERAGE") } else { definitions }
+    }
+}
+
+/// The filter of a rectified map.
+pub struct Prefilter {
+    pass: Pass,
+    sampler: Sampler,
+    textures: Vec<(&'static str, Texture)>,
+    threads: [u32; 3],
+}
+
+impl Prefilter {
+    /// Builds the pass and the textures. `projective`: over projective rows.
+    pub(super) fn new(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        settings: &Settings,
+        projective: bool,
+    ) -> Result<Self, PassError> {
+        let [width, height] = settings.map;
+        let usage = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
+        let flat = |size, format| Texture::storage(gpu, size, format);
+        let compute = |pass, definitions| Pass::compute_with(gpu, shaders, pass, &definitions);
+        let (pass, textures, threads) = match settings.visibility {
+            Visibility::Fourier => {
+                let definitions = settings.filter_definitions();
+                let definitions = if projective { definitions.flag("PROJECTIVE") } else { definitions };
+                let layers = settings.light.layers(settings.bases);
+                let format = settings.format.texture_format();
+                let chunks = settings.bases.div_ceil(settings.bases_per_thread.min(settings.bases));
+                (
+                    compute("scattering/filter", definitions)?,
+                    vec![("bases", Texture::array(gpu, [width, height, layers], format, usage))],
+                    [height, chunks, settings.regions],
+                )
+            }
+            Visibility::Moments => (
+                compute("scattering/filter_moments", settings.average(Definitions::new()))?,
+                vec![("moments", flat([width, height], TextureFormat::Rgba32Uint))],
+                [1, height, 1],
+            ),
+            Visibility::Rank { bits } => {
+                let definitions = settings.average(Definitions::new()).set("RANK", bits as i32);
+                let blocks = width.div_ceil(32);
+                let planes = [blocks, height, bits.div_ceil(4)];
+                (
+                    compute("scattering/rank", definitions)?,
+                    vec![
+                        ("rank_cells", flat([blocks * blocks, height], TextureFormat::Rg32Uint)),
+                        ("rank_starts", flat([1 << (bits - 1), height], TextureFormat::R32Uint)),
+                        ("rank_planes", Texture::array(gpu, planes, TextureFormat::Rgba32Uint, usage)),
+                    ],
+                    [64 * height, 1, 1],
+                )
+            }
+        };
+        Ok(Self { pass, sampler: Sampler::rows(gpu), textures, threads })
+    }
+
+    /// What the filter writes and an evaluation reads, by name.
+    pub(super) fn resources(&self) -> Vec<(&'static str, Resource<'_>)> {
+        let textures = self.textures.iter().map(|(name, texture)| (*name, texture.into()));
+        textures.chain([("bases_sampler", (&self.sampler).into())]).collect()
+    }
+
+    /// Binds the filter.
+    pub(super) fn bind(&self, gpu: &Gpu, resources: &[(&str, Resource<'_>)]) -> Result<Bound, PassError> {
+        self.pass.bind_known(gpu, resources)
+    }
+
+    /// Records the filter.
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound) {
+        self.pass.dispatch(encoder, bound, self.threads);
+    }
+
+    /// The texture that holds most of it: filtered bases, M/4 layers (with a fall-off those of each colour, and one of
+    /// the mean fall-off), moments, or cells.
+    pub fn stored(&self) -> &Texture {
+        &self.textures[0].1
+    }
+
+    /// All textures by the names of their bindings.
+    pub fn textures(&self) -> &[(&'static str, Texture)] {
+        &self.textures
+    }
+
+    /// Bytes of its textures.
+    pub fn memory(&self) -> u64 {
+        self.textures.iter().map(|(_, texture)| texture.memory()).sum()
+    }
+}
+
+impl BasisFormat {
+    pub(super) fn texture_format(self) -> TextureFormat {
+        match self {
+            Self::Rgba8Unorm => TextureFormat::Rgba8Unorm,
+            Self::Rgba16Float => TextureFormat::Rgba16Float,
+        }
+    }
+}
