@@ -34,15 +34,36 @@ const COLUMNS: u32 = 2048u;
 /// Pairs of values.
 const PAIRS: u32 = 1u << (BITS - 1u);
 const PAIRS_PER_THREAD: u32 = PAIRS / THREADS;
+/// Cells that are made at a time.
+const CELLS: u32 = 1024u;
+/// Stands for the texel beyond the last of a row.
+const NONE: u32 = 0xffffu;
 
-/// First how many texels have each value, then how many have a smaller one; two of 16 bits a word.
-var<workgroup> counts: array<atomic<u32>, PAIRS>;
-/// The columns in order of their values, and their weights in the upper 16 bits; before that the sums of the threads.
-var<workgroup> order: array<u32, COLUMNS>;
+/// First how many texels have each value, then how many have a smaller one, two of 16 bits a word; then the masks of
+/// cells and, behind CELLS of them, what is added in each.
+var<workgroup> counts: array<atomic<u32>, 2u * CELLS>;
+/// Values of the texels, then their ranks, two of 16 bits a word.
+var<workgroup> texels: array<u32, COLUMNS / 2u>;
+/// Texels of each thread's values.
+var<workgroup> sums: array<u32, THREADS>;
 
-/// Value of a texel.
-fn value_at(column: u32, row: u32) -> u32 {
-    return rank_value(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), BITS);
+/// Value of a texel, counted; NONE beyond the row.
+fn counted_value(column: u32, row: u32, columns: u32) -> u32 {
+    if column >= columns {
+        return NONE;
+    }
+    let value = rank_value(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), BITS);
+    atomicAdd(&counts[value / 2u], 1u << (16u * (value & 1u)));
+    return value;
+}
+
+/// The next rank of a value; NONE for NONE.
+fn taken_rank(value: u32) -> u32 {
+    if value == NONE {
+        return NONE;
+    }
+    let shift = 16u * (value & 1u);
+    return (atomicAdd(&counts[value / 2u], 1u << shift) >> shift) & 0xffffu;
 }
 
 @compute @workgroup_size(THREADS)
@@ -50,25 +71,28 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     let size = textureDimensions(rectified);
     let row = group.x;
     let columns = min(size.x, COLUMNS);
+    let words = (columns + 1u) / 2u;
+    let blocks = (columns + 31u) / 32u;
     if row >= size.y {
         return;
     }
-    for (var column = thread; column < columns; column += THREADS) {
-        let value = value_at(column, row);
-        atomicAdd(&counts[value / 2u], 1u << (16u * (value & 1u)));
+    for (var word = thread; word < words; word += THREADS) {
+        let first = counted_value(2u * word, row, columns);
+        texels[word] = first | (counted_value(2u * word + 1u, row, columns) << 16u);
     }
     workgroupBarrier();
 
+    write_planes(thread, row, blocks);
     var sum = 0u;
     for (var pair = thread * PAIRS_PER_THREAD; pair < (thread + 1u) * PAIRS_PER_THREAD; pair++) {
         let both = atomicLoad(&counts[pair]);
         sum += (both & 0xffffu) + (both >> 16u);
     }
-    order[thread] = sum;
+    sums[thread] = sum;
     workgroupBarrier();
     var start = 0u;
     for (var before = 0u; before < THREADS; before++) {
-        start += select(0u, order[before], before < thread);
+        start += select(0u, sums[before], before < thread);
     }
     for (var pair = thread * PAIRS_PER_THREAD; pair < (thread + 1u) * PAIRS_PER_THREAD; pair++) {
         let both = atomicLoad(&counts[pair]);
@@ -78,61 +102,104 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
         start += (both & 0xffffu) + (both >> 16u);
     }
     workgroupBarrier();
+    for (var word = thread; word < words; word += THREADS) {
+        let values = texels[word];
+        let first = taken_rank(values & 0xffffu);
+        texels[word] = first | (taken_rank(values >> 16u) << 16u);
+    }
 
-#ifndef AVERAGE
+#ifdef AVERAGE
+    let optical_step = 0.0;
+#else
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     let optical_step = max(medium.extinction * slice.radius_max / (f32(size.x) * slice.reference), 0.0);
 #endif
-    for (var column = thread; column < columns; column += THREADS) {
-        let value = value_at(column, row);
-        let shift = 16u * (value & 1u);
-        let rank = (atomicAdd(&counts[value / 2u], 1u << shift) >> shift) & 0xffffu;
-#ifdef AVERAGE
-        let weight = 0u;
-#else
-        let weight = u32(exp(-optical_step * f32(column)) * WEIGHT_STEPS + 0.5);
-#endif
-        order[min(rank, COLUMNS - 1u)] = column | (weight << 16u);
-    }
-    workgroupBarrier();
-
-    let blocks = (columns + 31u) / 32u;
-    for (var block = thread; block < blocks; block += THREADS) {
-        write_planes(block, row, columns);
-        write_cells(block, row, columns, blocks);
+    // As many chunks at a time as there is room for.
+    let strip = CELLS / blocks;
+    var base = 0u;
+    for (var first = 0u; first < blocks; first += strip) {
+        workgroupBarrier();
+        for (var cell = thread; cell < 2u * CELLS; cell += THREADS) {
+            atomicStore(&counts[cell], 0u);
+        }
+        workgroupBarrier();
+        for (var word = thread; word < words; word += THREADS) {
+            let ranks = texels[word];
+            add_texel(2u * word, ranks & 0xffffu, first, strip, blocks, optical_step);
+            add_texel(2u * word + 1u, ranks >> 16u, first, strip, blocks, optical_step);
+        }
+        workgroupBarrier();
+        for (var chunk = thread; chunk < strip; chunk += THREADS) {
+            sum_blocks(chunk * blocks, blocks);
+        }
+        workgroupBarrier();
+        if thread < blocks {
+            base = write_cells(thread, row, first, min(strip, blocks - first), blocks, base);
+        }
     }
 }
 
 /// Bit planes of the values of a block.
-fn write_planes(block: u32, row: u32, columns: u32) {
-    for (var layer = 0u; layer < (BITS + 3u) / 4u; layer++) {
-        var planes = vec4<u32>(0u);
-        for (var column = 0u; column < 32u; column++) {
-            // Columns beyond the row are never asked for.
-            let value = value_at(min(32u * block + column, columns - 1u), row) >> (4u * layer);
-            planes |= ((vec4<u32>(value) >> vec4<u32>(0u, 1u, 2u, 3u)) & vec4<u32>(1u)) << vec4<u32>(column);
-        }
-        textureStore(rank_planes, vec2<u32>(block, row), layer, planes);
+fn write_planes(block: u32, row: u32, blocks: u32) {
+    if block >= blocks {
+        return;
+    }
+    var low = vec4<u32>(0u);
+    var middle = vec4<u32>(0u);
+    var high = vec4<u32>(0u);
+    // Columns beyond the row are never asked for.
+    for (var column = 0u; column < 32u; column++) {
+        let value = (texels[16u * block + column / 2u] >> (16u * (column & 1u))) & 0xffffu;
+        let bits = vec4<u32>(value) >> vec4<u32>(0u, 1u, 2u, 3u);
+        low |= (bits & vec4<u32>(1u)) << vec4<u32>(column);
+        middle |= ((bits >> vec4<u32>(4u)) & vec4<u32>(1u)) << vec4<u32>(column);
+        high |= ((bits >> vec4<u32>(8u)) & vec4<u32>(1u)) << vec4<u32>(column);
+    }
+    textureStore(rank_planes, vec2<u32>(block, row), 0u, low);
+    textureStore(rank_planes, vec2<u32>(block, row), 1u, middle);
+    if BITS > 8u {
+        textureStore(rank_planes, vec2<u32>(block, row), 2u, high);
     }
 }
 
-/// The cells of a block with all chunks.
-fn write_cells(block: u32, row: u32, columns: u32, blocks: u32) {
-    var base = 0u;
-    for (var chunk = 0u; chunk < blocks; chunk++) {
-        var mask = 0u;
-        var added = 0u;
-        for (var rank = 0u; rank < min(32u, columns - 32u * chunk); rank++) {
-            let entry = order[32u * chunk + rank];
-            let left = (entry & 0xffffu) < 32u * block;
-            mask |= select(0u, 1u, left) << rank;
-            added += select(0u, entry >> 16u, left);
-        }
-        textureStore(rank_cells, vec2<u32>(chunk * blocks + block, row), vec4<u32>(mask, base, 0u, 0u));
+/// Adds a texel to the cell of its chunk and block, if the chunk is one of `strip` from `first` on.
+fn add_texel(column: u32, rank: u32, first: u32, strip: u32, blocks: u32, optical_step: f32) {
+    let chunk = rank / 32u - first;
+    // Chunks before the first wrap to great numbers, and NONE is one.
+    if chunk >= strip || rank == NONE {
+        return;
+    }
+    let cell = min(chunk * blocks + column / 32u, CELLS - 1u);
+    atomicOr(&counts[cell], 1u << (rank & 31u));
+#ifndef AVERAGE
+    atomicAdd(&counts[CELLS + cell], u32(exp(-optical_step * f32(column)) * WEIGHT_STEPS + 0.5));
+#endif
+}
+
+/// Turns what is in each block of a chunk, from `begin` on, into what is left of the block.
+fn sum_blocks(begin: u32, blocks: u32) {
+    var mask = 0u;
+    var added = 0u;
+    for (var cell = begin; cell < begin + blocks; cell++) {
+        mask |= atomicExchange(&counts[cell], mask);
+#ifndef AVERAGE
+        added += atomicExchange(&counts[CELLS + cell], added);
+#endif
+    }
+}
+
+/// The cells of a block with `count` chunks from `first` on; gives the base after them.
+fn write_cells(block: u32, row: u32, first: u32, count: u32, blocks: u32, before: u32) -> u32 {
+    var base = before;
+    for (var chunk = 0u; chunk < count; chunk++) {
+        let cell = chunk * blocks + block;
+        let mask = atomicLoad(&counts[cell]);
+        textureStore(rank_cells, vec2<u32>(first * blocks + cell, row), vec4<u32>(mask, base, 0u, 0u));
 #ifdef AVERAGE
         base += countOneBits(mask);
 #else
-        base += added;
+        base += atomicLoad(&counts[CELLS + cell]);
 #endif
     }
+    return base;
 }
