@@ -266,6 +266,24 @@ impl Texture {
     /// # Errors
     /// [`GpuError::Reading`], [`GpuError::Refused`].
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<f32>, GpuError> {
+        let mut values = Vec::new();
+        for row in self.read_rows(gpu)? {
+            decode(self.raw.format(), &row, &mut values)?;
+        }
+        Ok(values)
+    }
+
+    /// All texels as little-endian 32-bit words, in the order of [`Texture::read`].
+    ///
+    /// # Errors
+    /// As [`Texture::read`].
+    pub fn read_words(&self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        let word = |b: &[u8]| u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        Ok(self.read_rows(gpu)?.iter().flat_map(|row| row.chunks_exact(4).map(word)).collect())
+    }
+
+    /// The bytes of each row.
+    fn read_rows(&self, gpu: &Gpu) -> Result<Vec<Vec<u8>>, GpuError> {
         let format = self.raw.format();
         let [width, height, layers] = self.size();
         if self.raw.sample_count() > 1 {
@@ -297,11 +315,7 @@ impl Texture {
         );
         gpu.submit(encoder)?;
         let bytes = map(gpu, &copy)?;
-        let mut values = Vec::new();
-        for row in bytes.chunks_exact(padded as usize) {
-            decode(format, &row[..tight as usize], &mut values)?;
-        }
-        Ok(values)
+        Ok(bytes.chunks_exact(padded as usize).map(|row| row[..tight as usize].to_vec()).collect())
     }
 }
 

@@ -5,6 +5,7 @@ use super::flags::{
     JitterSpelling, MethodSpelling, Options, RectificationSpelling, ReferenceSpelling, StartSpelling,
 };
 use crate::command::parse::{DepthSpelling, LightSpelling, Projection};
+use crate::scattering::{RANK_COLUMNS, Visibility};
 
 /// What cannot be meant.
 pub struct Conflict {
@@ -16,7 +17,8 @@ pub struct Conflict {
 
 /// The first conflict among the flags.
 pub fn find(flags: &Options) -> Option<Conflict> {
-    let rules = camera(flags).into_iter().chain(light(flags)).chain(march(flags)).chain(rows(flags));
+    let rules = camera(flags).into_iter().chain(light(flags)).chain(march(flags));
+    let rules = rules.chain(methods(flags)).chain(rows(flags));
     rules.into_iter().find(|(refused, ..)| *refused).map(|(_, flag, problem)| Conflict { flag, problem })
 }
 
@@ -97,13 +99,50 @@ fn march(flags: &Options) -> Vec<Rule> {
     ]
 }
 
+fn methods(flags: &Options) -> Vec<Rule> {
+    let other = matches!(flags.method, MethodSpelling::Moments | MethodSpelling::Rank);
+    let rank = matches!(flags.visibility(), Visibility::Rank { .. });
+    const BASES: &str = "it is of Fourier bases: leave it out, or take --method fourier";
+    vec![
+        (
+            other && (flags.local() || flags.light_texture.is_some()),
+            "--method",
+            "`moments` and `rank` are for directional lights without --light-texture: take auto",
+        ),
+        (
+            other && flags.camera == Projection::Orthographic,
+            "--method",
+            "`moments` and `rank` need a perspective camera: take auto",
+        ),
+        (other && flags.bases.is_some(), "--bases", BASES),
+        (other && flags.half, "--half", BASES),
+        (other && flags.regions > 1, "--regions", BASES),
+        (other && flags.splits.is_some(), "--splits", BASES),
+        (
+            other && flags.rectification == RectificationSpelling::Projective,
+            "--rectification",
+            "`projective` rows are filtered by Fourier bases only: take auto, or --method fourier",
+        ),
+        (
+            flags.bits.is_some() && !rank,
+            "--bits",
+            "only rank queries have them: leave it out, or take --method rank",
+        ),
+        (
+            flags.method == MethodSpelling::Rank && flags.map[0] > RANK_COLUMNS,
+            "--map",
+            "`--method rank` takes at most 2048 columns: take fewer, or --method auto",
+        ),
+    ]
+}
+
 fn rows(flags: &Options) -> Vec<Rule> {
     let orthographic = flags.camera == Projection::Orthographic;
     let projective = flags.rectification == RectificationSpelling::Projective;
     let epipolar = flags.rectification == RectificationSpelling::Epipolar;
     let optimum = flags.reference == ReferenceSpelling::Optimum;
     let weighted = flags.local() || flags.light_texture.is_some();
-    let fourier = flags.method == MethodSpelling::Fourier;
+    let filtered = flags.method != MethodSpelling::March;
     vec![
         (projective && flags.local(), "--rectification", "`projective` is for directional lights: take auto"),
         (
@@ -123,7 +162,7 @@ fn rows(flags: &Options) -> Vec<Rule> {
             "rows of a spot, a point light or a light texture are filtered in one region: leave it out",
         ),
         (
-            fourier && !orthographic && flags.near_plane() && weighted,
+            filtered && !orthographic && flags.near_plane() && weighted,
             "--start",
             "rays begin at the eye for a spot, a point light or a light texture: leave it out",
         ),

@@ -5,7 +5,7 @@ use super::conflicts;
 use crate::command::CommandError;
 use crate::command::parse::{self, DepthSpelling, LightSpelling, Projection};
 use crate::core::{Cascades, Jitter};
-use crate::scattering::{Reference, Resolution};
+use crate::scattering::{RANK_COLUMNS, Reference, Resolution, Visibility};
 use clap::ValueEnum;
 use glam::Vec3;
 use std::path::PathBuf;
@@ -13,8 +13,14 @@ use std::path::PathBuf;
 /// `--method`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MethodSpelling {
-    /// Prefiltered Fourier bases: constant cost a pixel.
+    /// Rank queries where they can be asked, else Fourier bases, or the march where there are no rows.
+    Auto,
+    /// Prefiltered Fourier bases: any light, soft edges.
     Fourier,
+    /// Six prefiltered moments: half the memory of 32 bases and less exact.
+    Moments,
+    /// Rank queries: exact.
+    Rank,
     /// One step after the other through the standard shadow map.
     March,
 }
@@ -104,6 +110,8 @@ impl ReferenceSpelling {
 
 /// Splits of projective rows where none are asked for.
 pub const SPLITS: u32 = 3;
+/// Bits of a depth, where the flag does not say.
+pub const RANK_BITS: u32 = 12;
 
 /// Flags of the command. Every flag but --mesh and --out has a default.
 #[derive(clap::Args)]
@@ -167,15 +175,18 @@ pub struct Options {
     #[arg(long, value_name = "G", default_value = "0.5", value_parser = parse::number, allow_hyphen_values = true)]
     pub g: f32,
     /// How visibility along a ray is found.
-    #[arg(long, value_enum, default_value = "fourier")]
+    #[arg(long, value_enum, default_value = "auto")]
     pub method: MethodSpelling,
-    /// Which rows the shadow map is resampled along, for --method fourier.
+    /// Bits of a depth for rank queries, 8 to 12 [default: 12].
+    #[arg(long, value_name = "B", value_parser = clap::value_parser!(u32).range(8..=12), allow_hyphen_values = true)]
+    pub bits: Option<u32>,
+    /// Which rows the shadow map is resampled along; those of --method moments and rank are epipolar.
     #[arg(long, value_enum, default_value = "auto")]
     pub rectification: RectificationSpelling,
     /// Parts that the columns of projective rows are split into, 1 to 4 [default: 3].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=4), allow_hyphen_values = true)]
     pub splits: Option<u32>,
-    /// Regions of a row that are filtered in parallel, 1 to 8.
+    /// Regions of a row that Fourier bases are filtered in, in parallel, 1 to 8.
     #[arg(long, value_name = "R", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=8), allow_hyphen_values = true)]
     pub regions: u32,
     /// Where rays, and the air, begin [default: eye; near-plane for an orthographic camera].
@@ -187,9 +198,9 @@ pub struct Options {
     /// How many pixels are evaluated; the others are interpolated.
     #[arg(long, value_enum, default_value = "full")]
     pub resolution: ResolutionSpelling,
-    /// Number of Fourier bases, a multiple of 4 from 4 to 128.
-    #[arg(long, value_name = "M", default_value = "32")]
-    pub bases: u32,
+    /// Number of Fourier bases, a multiple of 4 from 4 to 128 [default: 32].
+    #[arg(long, value_name = "M")]
+    pub bases: Option<u32>,
     /// Plain average visibility instead of visibility weighted by transmittance.
     #[arg(long)]
     pub average: bool,
@@ -231,6 +242,28 @@ impl Options {
     /// Where rays begin.
     pub fn near_plane(&self) -> bool {
         self.camera == Projection::Orthographic || self.start == Some(StartSpelling::NearPlane)
+    }
+
+    /// True where a flag says that there are Fourier bases.
+    pub fn asks_for_bases(&self) -> bool {
+        let projective = self.rectification == RectificationSpelling::Projective;
+        self.bases.is_some() || self.half || self.regions > 1 || self.splits.is_some() || projective
+    }
+
+    /// How visibility is prefiltered, unless it is marched.
+    pub fn visibility(&self) -> Visibility {
+        let rank = Visibility::Rank { bits: self.bits.unwrap_or(RANK_BITS) };
+        let weighted = self.local() || self.light_texture.is_some();
+        let perspective = self.camera == Projection::Perspective;
+        match self.method {
+            MethodSpelling::Fourier | MethodSpelling::March => Visibility::Fourier,
+            MethodSpelling::Moments => Visibility::Moments,
+            MethodSpelling::Rank => rank,
+            MethodSpelling::Auto => {
+                let fits = perspective && !weighted && self.map[0] <= RANK_COLUMNS;
+                if fits && !self.asks_for_bases() { rank } else { Visibility::Fourier }
+            }
+        }
     }
 
     /// Checks what the flags alone say.

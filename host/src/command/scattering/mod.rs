@@ -185,7 +185,8 @@ impl Eye {
 
 fn settings(options: &Options, form: LightForm, gpu: &Gpu) -> Settings {
     Settings {
-        bases: options.bases,
+        visibility: options.visibility(),
+        bases: options.bases.unwrap_or(Settings::default().bases),
         map: options.map,
         format: if options.half { BasisFormat::Rgba16Float } else { BasisFormat::Rgba8Unorm },
         weighting: if options.average { Weighting::Average } else { Weighting::Transmittance },

@@ -33,12 +33,16 @@ impl Buffers {
             ViewPasses::Epipolar(passes) => {
                 self.texture(gpu, &named("slices"), &passes.rectification.slices)?;
                 self.texture(gpu, &named("rectified"), &passes.rectification.rectified)?;
-                self.texture(gpu, &named("bases"), passes.prefilter.stored())?;
+                for (name, texture) in passes.prefilter.textures() {
+                    self.texture(gpu, &named(name), texture)?;
+                }
                 ("frame", passes.rectification.frame.read_floats(gpu)?)
             }
             ViewPasses::Projective(passes) => {
                 self.texture(gpu, &named("rectified"), &passes.map.rectified)?;
-                self.texture(gpu, &named("bases"), passes.prefilter.stored())?;
+                for (name, texture) in passes.prefilter.textures() {
+                    self.texture(gpu, &named(name), texture)?;
+                }
                 ("rows", passes.map.rows.read_floats(gpu)?)
             }
             ViewPasses::March { .. } => return self.texture(gpu, &named("scattered"), view.scattered()),
@@ -72,9 +76,12 @@ impl Buffers {
 
 /// A texture as an array: layers first where there are several, then rows, columns, channels.
 fn array(gpu: &Gpu, texture: &Texture) -> Result<Array, CommandError> {
-    let values = texture.read(gpu)?;
+    use wgpu::TextureFormat::{R32Uint, Rg32Uint, Rgba32Uint};
+    let words = matches!(texture.raw.format(), R32Uint | Rg32Uint | Rgba32Uint);
+    let data =
+        if words { ArrayData::U32(texture.read_words(gpu)?) } else { ArrayData::F32(texture.read(gpu)?) };
     let [width, height, layers] = texture.size().map(|side| side as usize);
-    let channels = values.len() / (width * height * layers);
+    let channels = data.len() / (width * height * layers);
     let mut shape = vec![height, width];
     if layers > 1 {
         shape.insert(0, layers);
@@ -82,7 +89,7 @@ fn array(gpu: &Gpu, texture: &Texture) -> Result<Array, CommandError> {
     if channels > 1 {
         shape.push(channels);
     }
-    Ok(Array { shape, data: ArrayData::F32(values) })
+    Ok(Array { shape, data })
 }
 
 /// Writes radiance as .png (tone-mapped) or .exr (linear), by the ending of `path`; pictures of one size side by side.

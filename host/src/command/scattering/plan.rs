@@ -5,8 +5,8 @@ use super::flags::{MethodSpelling, Options, RectificationSpelling, ReferenceSpel
 use crate::command::CommandError;
 use crate::core::{Camera, Light};
 use crate::scattering::{
-    Choice, LightForm, Method, Projective, ProjectiveError, Settings, choose, epipole_near_picture,
-    projective_rows,
+    Choice, LightForm, Method, Projective, ProjectiveError, Settings, Visibility, choose,
+    epipole_near_picture, projective_rows,
 };
 
 /// The rows of every view.
@@ -110,7 +110,8 @@ fn automatic(
 ) -> Plan {
     let march = |reason: &str| Plan { rows: Rows::None, reason: format!("none, marched instead ({reason})") };
     let epipolar = |reason: &str| Plan { rows: Rows::Epipolar, reason: format!("epipolar ({reason})") };
-    if form.plain() && flags.reference == ReferenceSpelling::Bisectrix {
+    let bases = flags.visibility() == Visibility::Fourier;
+    if bases && form.plain() && flags.reference == ReferenceSpelling::Bisectrix {
         let mut rows = Vec::new();
         for camera in cameras {
             match choose(camera) {
@@ -136,6 +137,8 @@ fn automatic(
         "a light texture is filtered along them only"
     } else if form.shadow_array {
         "cascades are resampled along them only"
+    } else if !bases {
+        "moments and rank queries are of these"
     } else {
         "--reference optimum is of these"
     })
