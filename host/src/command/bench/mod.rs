@@ -6,6 +6,7 @@ mod choices;
 mod resolution;
 mod scattering;
 mod tables;
+mod visibility;
 
 use super::CommandError;
 use crate::formats::write_whole;

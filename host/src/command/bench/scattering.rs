@@ -137,7 +137,7 @@ pub fn run(gpu: &Gpu, record: Work<'_>) -> Result<(), CommandError> {
 
 /// Every named figure.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {
-    let bar = progress::bar(9, quiet);
+    let bar = progress::bar(10, quiet);
     let mut rows = Vec::new();
     bar.set_message("march over prefiltered, foliage 1920x1080");
     rows.extend(march_over_prefiltered(gpu, shaders)?);
@@ -157,6 +157,9 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
     bar.inc(1);
     bar.set_message("reference ray, epipole, projective rows");
     rows.extend(super::choices::rows(gpu, shaders)?);
+    bar.inc(1);
+    bar.set_message("ways to prefilter visibility");
+    rows.extend(super::visibility::rows(gpu, shaders)?);
     bar.inc(1);
     bar.set_message("evaluation of torus against tree");
     rows.push(scene_independence(gpu, shaders)?);
