@@ -76,7 +76,14 @@ impl Run {
         let said = succeeds(at, &arguments).out;
         let arrays = files(Path::new(buffers)).into_keys();
         let name = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
-        let buffers: BTreeMap<_, _> = arrays.map(|path| (name(&path), npy::read_f32(&path))).collect();
+        let values = |path: &Path| {
+            if npy::read(path).descr != "<u4" {
+                return npy::read_f32(path);
+            }
+            let (shape, words) = npy::read_u32(path);
+            (shape, words.into_iter().map(|word| word as f32).collect())
+        };
+        let buffers: BTreeMap<_, _> = arrays.map(|path| (name(&path), values(&path))).collect();
         for (name, (_, values)) in &buffers {
             // Two integers among the words of `rows` are no floats.
             let finite = values.iter().all(|value| value.is_finite());
@@ -140,7 +147,10 @@ fn agrees(at: &Path, setup: &str, own: &str, reason: &str, tolerance: f64) {
 fn rows_of_a_directional_light_agree_with_the_march() {
     let at = scene();
     let at = at.path();
-    agrees(at, SUN, "", "projective (", 0.03);
+    agrees(at, SUN, "", "epipolar (moments and rank", 0.015);
+    agrees(at, SUN, "--method rank --bits 8", "epipolar (moments and rank", 0.02);
+    agrees(at, SUN, "--method moments", "epipolar (moments and rank", 0.06);
+    agrees(at, SUN, "--method fourier", "projective (", 0.03);
     agrees(at, SUN, "--rectification projective --splits 4", "projective (as asked for)", 0.03);
     let rows = &Run::new(at, "hall.obj", &format!("{SUN} --splits 4")).buffers["rows"];
     // The words of the uniform; the number of splits is an integer.
@@ -149,6 +159,7 @@ fn rows_of_a_directional_light_agree_with_the_march() {
     agrees(at, SUN, "--reference optimum --regions 3", "epipolar (--reference", 0.03);
     let ahead = format!("{EYE} --light directional:185,12");
     // Rows around a light in the picture hold rays of all angles, which share their weights; plain means are exact.
+    agrees(at, &ahead, "", "epipolar (moments and rank", 0.03);
     agrees(at, &ahead, "--half --bases 64", "epipolar (the light is in the picture", 0.06);
     agrees(at, &format!("{ahead} --average"), "--half --bases 64", "epipolar (the light is in", 0.03);
     agrees(at, &format!("{SUN} --average"), "--regions 4 --splits 2", "projective (", 0.04);
@@ -158,8 +169,10 @@ fn rows_of_a_directional_light_agree_with_the_march() {
 fn depth_of_every_kind_is_taken() {
     let at = scene();
     let at = at.path();
-    agrees(at, &format!("{SUN} --depth-range reversed"), "", "projective (", 0.03);
-    agrees(at, &format!("{SUN} --depth-range infinite --far 14"), "", "projective (", 0.03);
+    agrees(at, &format!("{SUN} --depth-range reversed"), "", "epipolar (moments and rank", 0.015);
+    agrees(at, &format!("{SUN} --depth-range infinite --far 14"), "", "epipolar (moments and rank", 0.015);
+    agrees(at, &format!("{SUN} --depth-range reversed"), "--method fourier", "projective (", 0.03);
+    agrees(at, &format!("{SUN} --depth-range infinite --far 14"), "--method fourier", "projective (", 0.03);
     agrees(at, &format!("{POINT} --depth-range infinite"), "", "epipolar (", 0.03);
     agrees(at, &format!("{SUN} --samples 4"), "--rectification epipolar", "epipolar (", 0.03);
     // Several samples change the edges of the picture, and nothing but those.
@@ -303,8 +316,12 @@ fn two_eyes_see_what_each_would() {
     // The camera's right is +x turned towards -z, seen from (0.5, 1.2, 6) at (0, 1.1, 0).
     let look = Vec3::new(-0.5, -0.1, -6.0);
     let right = look.cross(Vec3::Y).normalize() * 0.2;
-    for (light, reason) in [("directional:95,35", "projective"), ("spot:-2,4,1,0,0.5,0,30", "epipolar")] {
-        let own = format!("--light {light} --radiance 20,20,20 --near 0.05 --far 14");
+    for (light, method, reason) in [
+        ("directional:95,35", "auto", "epipolar (moments and rank"),
+        ("directional:95,35", "fourier", "projective"),
+        ("spot:-2,4,1,0,0.5,0,30", "auto", "epipolar (rows of a spot"),
+    ] {
+        let own = format!("--light {light} --method {method} --radiance 20,20,20 --near 0.05 --far 14");
         let both = Run::new(at, "hall.obj", &format!("{EYE} {own} --stereo 0.4"));
         assert!(both.reason().starts_with(reason), "{}", both.said);
         for (name, side) in [("left_", -right), ("right_", right)] {
@@ -332,16 +349,25 @@ fn flags_of_the_filter_reach_it() {
     let at = scene();
     let setup = format!("{SUN} --rectification epipolar --extinction 0.2");
     let run = |own: &str| Run::new(at.path(), "hall.obj", &format!("{setup}{own}")).buffers;
-    let plain = run("");
-    for (flag, changed) in [
-        (" --reference optimum", "slices"),
-        (" --regions 3", "bases"),
-        (" --average", "bases"),
-        (" --half", "bases"),
-        (" --bases 16", "bases"),
+    for (method, flag, changed) in [
+        ("fourier", " --reference optimum", "slices"),
+        ("fourier", " --regions 3", "bases"),
+        ("fourier", " --average", "bases"),
+        ("fourier", " --half", "bases"),
+        ("fourier", " --bases 16", "bases"),
+        ("rank", " --bits 10", "rank_starts"),
+        ("rank", " --average", "rank_cells"),
+        ("moments", " --average", "moments"),
     ] {
-        assert!(run(flag)[changed] != plain[changed], "{flag} does not change {changed}");
+        let method = format!(" --method {method}");
+        let [plain, other] = ["", flag].map(|flag| run(&format!("{method}{flag}")));
+        assert!(other[changed] != plain[changed], "{flag} does not change {changed}");
     }
+    // Flags of Fourier bases ask for them.
+    for flag in [" --bases 16", " --half", " --regions 2"] {
+        assert!(run(flag).contains_key("bases"), "{flag}");
+    }
+    assert!(run("").contains_key("rank_cells"));
 }
 
 #[test]
@@ -435,6 +461,22 @@ fn flags_that_cannot_be_meant_are_refused() {
     for flag in ["--rectification projective", "--splits 2", "--regions 2", "--reference optimum"] {
         bad(&format!("--method march {flag}"), &[flag.split(' ').next().unwrap(), "--method fourier"]);
     }
+    for method in ["rank", "moments"] {
+        for flag in ["--bases 16", "--half", "--regions 2", "--splits 2", "--rectification projective"] {
+            let parts = [flag.split(' ').next().unwrap(), "--method fourier"];
+            bad(&format!("--method {method} {flag}"), &parts);
+        }
+        for other in [spot, point, orthographic, "--light-texture glass.png"] {
+            bad(&format!("--method {method} {other}"), &["--method", "take auto"]);
+        }
+    }
+    for bits in ["7", "13", "ten"] {
+        bad(&format!("--bits {bits}"), &["--bits", bits]);
+    }
+    for other in ["--method fourier", "--method march", "--half", spot] {
+        bad(&format!("--bits 10 {other}"), &["--bits", "--method rank"]);
+    }
+    // The map of these runs is given already.
     bad("--method march --start near-plane", &["--start", "--method fourier"]);
     bad("--jitter gradient", &["--jitter", "--method march"]);
     bad(&format!("--method march {spot} --jitter gradient"), &["--jitter", "leave it out"]);

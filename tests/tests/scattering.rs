@@ -8,7 +8,8 @@
 mod gpu;
 
 use airlight::scattering::{
-    Along, BasisFormat, Frame, Inputs, March, Medium, Prefiltered, Rectification, Settings, Weighting,
+    Along, BasisFormat, Frame, Inputs, March, Medium, Prefiltered, Rectification, Settings, Visibility,
+    Weighting,
 };
 use airlight::{Buffer, Stage, Texture, scenes};
 use airlight_tests::error;
@@ -662,10 +663,12 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     };
     let defaults = Settings { bases: 8, map: MAP, format: BasisFormat::Rgba16Float, ..Settings::default() };
     let plain = Settings { window: false, epipole_march: false, weighting: Weighting::Average, ..defaults };
-    // Cases take turns: with everything and along rows, plain and through the shadow map.
-    let methods =
-        [defaults, plain].map(|settings| Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap());
-    let bound = [0, 1].map(|i| methods[i].bind(gpu(), &inputs).unwrap());
+    let rank = Settings { visibility: Visibility::Rank { bits: 12 }, ..defaults };
+    let moments = Settings { visibility: Visibility::Moments, ..defaults };
+    // Cases take turns: with everything and along rows, plain and through the shadow map; then the other methods.
+    let methods = [defaults, plain, rank, moments]
+        .map(|settings| Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap());
+    let bound = [0, 1, 2, 3].map(|i| methods[i].bind(gpu(), &inputs).unwrap());
     let alongs = [Along::Rows(&methods[0].rectification), Along::ShadowMap { steps: 24 }];
     let marches = [0, 1].map(|i| {
         let march = March::new(gpu(), shaders(), &alongs[i], Weighting::Transmittance, PICTURE).unwrap();
@@ -674,12 +677,15 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     });
     // Every picture of a batch in one buffer: rows are padded to 256 bytes.
     const ROW: usize = 256;
-    let pictures = [0, 1].map(|i| {
+    let pictures = [0, 1, 2, 3].map(|i| {
         let (method, map) = (&methods[i], &methods[i].rectification);
-        [&method.scattered, &marches[i].0.scattered, &map.rectified, &map.slices, method.prefilter.stored()]
+        let mut all = vec![&method.scattered, &marches[i % 2].0.scattered, &map.rectified, &map.slices];
+        // What rank queries and moments store has tests of its own.
+        all.extend((i < 2).then(|| method.prefilter.stored()));
+        all
     });
-    let rows = pictures[0].map(|texture| (texture.size()[1] * texture.size()[2]) as usize);
-    let stride = rows.iter().sum::<usize>() * ROW;
+    let height = |texture: &&Texture| (texture.size()[1] * texture.size()[2]) as usize;
+    let stride = pictures[0].iter().map(height).sum::<usize>() * ROW;
     let store = Buffer::storage(gpu(), (stride * BATCH) as u64);
     let half = |bytes: &[u8], i: usize| half::f16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]]).to_f32();
     let float = |bytes: &[u8], i: usize| f32::from_le_bytes(bytes[4 * i..4 * i + 4].try_into().unwrap());
@@ -694,11 +700,11 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
             depth.write(gpu(), &wild_depths(&mut random, PIXELS, case.camera.far_depth)).unwrap();
             shadow_map.write(gpu(), &wild_depths(&mut random, 64, case.light.far_depth)).unwrap();
             let mut encoder = gpu().encoder();
-            methods[index % 2].record(&mut encoder, &bound[index % 2]);
+            methods[index % 4].record(&mut encoder, &bound[index % 4]);
             let (march, march_bound) = &marches[index % 2];
             march.record(&mut encoder, march_bound);
             let mut offset = index * stride;
-            for (texture, rows) in pictures[index % 2].iter().zip(rows) {
+            for texture in &pictures[index % 4] {
                 encoder.copy_texture_to_buffer(
                     texture.raw.as_image_copy(),
                     wgpu::TexelCopyBufferInfo {
@@ -711,7 +717,7 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
                     },
                     texture.raw.size(),
                 );
-                offset += rows * ROW;
+                offset += height(texture) * ROW;
             }
             gpu().submit(encoder).unwrap();
             cases.push(case);
@@ -728,7 +734,8 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
                 )
             };
             let mut offset = 0;
-            for (which, (texture, rows)) in pictures[index % 2].iter().zip(rows).enumerate() {
+            for (which, texture) in pictures[index % 4].iter().enumerate() {
+                let rows = height(texture);
                 let columns = texture.size()[0] as usize;
                 for (y, x) in (0..rows).flat_map(|y| (0..columns).map(move |x| (y, x))) {
                     let line = &bytes[offset + y * ROW..][..ROW];

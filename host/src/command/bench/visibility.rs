@@ -93,7 +93,9 @@ fn costs(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let march_bound = march.bind(gpu, &stage.inputs(), &along)?;
     let truth = Truth::new(gpu, &stage, &map.rectified)?;
     let exact = truth.rectified.average();
-    let error = |texture: &crate::Texture| truth.visibility(gpu, texture).map(|values| error::mean_absolute(&values, &exact));
+    let error = |texture: &crate::Texture| {
+        truth.visibility(gpu, texture).map(|values| error::mean_absolute(&values, &exact))
+    };
 
     let both: Vec<_> =
         all.iter().map(|one| move |encoder: &mut wgpu::CommandEncoder| one.both(encoder)).collect();
