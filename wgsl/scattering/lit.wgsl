@@ -3,7 +3,7 @@
 // summary: Callback: the light that reaches a point, and its mean over a view ray by marching, from a pass' bindings.
 // source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
 // note: Unlike algorithm modules a callback holds bindings, those that passes share. An engine that keeps its shadow maps
-// note: in another way replaces this file: `lit_at` is all that depends on them.
+// note: in another way replaces this file: only `lit_at` and `marched_visibility` read them.
 // note: Definitions SHADOW_ARRAY and LIGHT_TEXTURE as in the passes.
 
 #import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 //! Airlight's WGSL as text, without dependencies.
 //!
-//! A shader is two things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
-//! and constants: no bindings, no entry points. A *pass* ([`PASSES`]) holds bindings, entry points
-//! and loops over texels. Both are written for `naga_oil`; any version of its `Composer` is filled
+//! A shader is three things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
+//! and constants: no bindings, no entry points. A *callback* (`lit` and `prefiltered`, among the
+//! modules) holds bindings that several passes share behind functions, for an engine to replace. A
+//! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
 //!
 //! ```ignore
@@ -14,7 +15,7 @@
 //! }
 //! ```
 
-/// An algorithm module: functions, structs and constants that an engine imports.
+/// An algorithm module or callback: functions, structs and constants that an engine imports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Module {
     /// Import path, `airlight::<system>::<module>`.

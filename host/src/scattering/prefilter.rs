@@ -153,7 +153,7 @@ impl Prefilter {
         self.pass.dispatch(encoder, bound, self.threads);
     }
 
-    /// The texture that holds most of it: filtered bases, M/4 layers (with a fall-off those of each colour, and one of
+    /// The texture that the others go with: filtered bases, M/4 layers (with a fall-off those of each colour, and one of
     /// the mean fall-off), moments, or cells.
     pub fn stored(&self) -> &Texture {
         &self.textures[0].1

@@ -2,7 +2,8 @@
 // summary: The rank structure of every row of a rectified map, for exact visibility.
 // source: none; see scattering/visibility_rank and docs/src/rank.md.
 // note: One workgroup sorts a row by counting, in workgroup memory, and cuts the order of its texels into cells.
-// note: Which of two equal texels comes first is left to the adapter: no query tells them apart.
+// note: Plain counts do not tell which of two equal texels comes first, and it is left to the adapter. Weighted queries
+// note: do, where equal texels lie in two chunks: one thread then gives out the ranks in the order of the columns.
 // note: Rows of more than 2048 columns are not taken: their order would not fit into workgroup memory.
 // definition RANK: bits of a depth, 8 to 12.
 // definition AVERAGE: cells count texels, instead of adding their transmittance on the reference ray.
@@ -58,7 +59,7 @@ fn counted_value(column: u32, row: u32, columns: u32) -> u32 {
 }
 
 /// The next rank of a value; NONE for NONE.
-fn taken_rank(value: u32) -> u32 {
+fn next_rank(value: u32) -> u32 {
     if value == NONE {
         return NONE;
     }
@@ -102,18 +103,21 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
         start += (both & 0xffffu) + (both >> 16u);
     }
     workgroupBarrier();
-    for (var word = thread; word < words; word += THREADS) {
-        let values = texels[word];
-        let first = taken_rank(values & 0xffffu);
-        texels[word] = first | (taken_rank(values >> 16u) << 16u);
-    }
-
 #ifdef AVERAGE
     let optical_step = 0.0;
+    let rankers = THREADS;
 #else
+    let rankers = 1u;
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     let optical_step = max(medium.extinction * slice.radius_max / (f32(size.x) * slice.reference), 0.0);
 #endif
+    if thread < rankers {
+        for (var word = thread; word < words; word += rankers) {
+            let values = texels[word];
+            let first = next_rank(values & 0xffffu);
+            texels[word] = first | (next_rank(values >> 16u) << 16u);
+        }
+    }
     // As many chunks at a time as there is room for.
     let strip = CELLS / blocks;
     var base = 0u;
