@@ -18,6 +18,7 @@
 // note: Bias. Rounding may leave no distribution with the stored moments. They are mixed with MOMENT_BIAS of those of the
 // note: density 1 / (pi sqrt(1 - z^2)), which are all 0: multiplied by 1 - MOMENT_BIAS. That adds MOMENT_BIAS / 2 to the
 // note: least eigenvalue of G; the storage takes at most sqrt(15) / (2^21 - 1) = 1.9e-6 away.
+// note: Values, not branches: around this much arithmetic a branch in a fragment shader ends lavapipe of Mesa 22.3.
 // note: Blend. A lower bound of visibility darkens every ray that ends on a lit surface, whose own depth is among those
 // note: stored. For single scattering the paper blends both bounds; MOMENT_BLEND is what erred least over the scenes of
 // note: docs/src/moments.md. Near a depth that many texels share visibility is too low by MOMENT_BLEND times their share.
@@ -135,6 +136,20 @@ fn greatest_weight(factors: Factors, polynomials: vec3<f32>) -> f32 {
     return 1.0 / (1.0 + dot(polynomials * polynomials, factors.inverse));
 }
 
+/// cos(acos(x) / 3) for x from -1 to 1, and at most 3e-6 more: a polynomial in cos(acos(x) / 2).
+fn cosine_of_third(x: f32) -> f32 {
+    let half = sqrt(0.5 * x + 0.5);
+    let last = 0.04763451 + half * (half * 0.00412080 - 0.01912183);
+    return 0.5000028 + half * (0.57725041 + half * (half * last - 0.10988446));
+}
+
+/// One step of Newton's method from `root` towards a root of t^3 + a t^2 + b t + c, `coefficients` a, b, c.
+fn newton_step(coefficients: vec3<f32>, root: f32) -> f32 {
+    let slope = (3.0 * root + 2.0 * coefficients.x) * root + coefficients.y;
+    let value = ((root + coefficients.x) * root + coefficients.y) * root + coefficients.z;
+    return root - select(0.0, value / max(slope, 1e-30), slope > 1e-30);
+}
+
 /// The greatest root of t^3 + a t^2 + b t + c, `coefficients` a, b, c, of which all roots are real.
 fn greatest_cubic_root(coefficients: vec3<f32>) -> f32 {
     let a = coefficients.x;
@@ -144,15 +159,9 @@ fn greatest_cubic_root(coefficients: vec3<f32>) -> f32 {
     let p = max(a * a - 3.0 * b, 0.0) / 9.0;
     let half_width = sqrt(p);
     let r = (a * (2.0 * a * a - 9.0 * b) + 27.0 * c) / 54.0;
-    let angle = acos(clamp(-r / max(p * half_width, 1e-30), -1.0, 1.0));
-    var root = 2.0 * half_width * cos(angle / 3.0) - a / 3.0;
+    let cosine = cosine_of_third(clamp(-r / max(p * half_width, 1e-30), -1.0, 1.0));
     // From above, Newton's steps come nearer without passing it. They recover a root that is small next to the others.
-    for (var step = 0u; step < 2u; step++) {
-        let slope = (3.0 * root + 2.0 * a) * root + b;
-        let value = ((root + a) * root + b) * root + c;
-        root -= select(0.0, value / max(slope, 1e-30), slope > 1e-30);
-    }
-    return root;
+    return newton_step(coefficients, newton_step(coefficients, 2.0 * half_width * cosine - a / 3.0));
 }
 
 /// Least and greatest share of stored depths at or beyond `depth`, both 0..1, that are possible with these moments.
@@ -163,12 +172,6 @@ fn moment_bounds(moments: Moments, depth: f32) -> vec2<f32> {
     let own = greatest_weight(factors, at_ray);
     let changes = select(vec3<u32>(0u), vec3<u32>(1u), at_ray * vec3<f32>(1.0, at_ray.xy) < vec3<f32>(0.0));
     let above = changes.x + changes.y + changes.z;
-    if above == 3u {
-        return vec2<f32>(1.0 - own, 1.0);
-    }
-    if above == 0u {
-        return vec2<f32>(0.0, own);
-    }
     // G^-1 T(z): K(x, z) as a sum of T_0..T_3 at x, then its derivatives at x = z over K(z, z).
     let scaled = at_ray * factors.inverse;
     let third = scaled.z;
@@ -179,11 +182,11 @@ fn moment_bounds(moments: Moments, depth: f32) -> vec2<f32> {
     // The root that lies alone on its side is the greatest in t, or the least, which is the greatest of the mirrored cubic.
     let side = select(-1.0, 1.0, above == 1u);
     let root = greatest_cubic_root(cubic * vec3<f32>(side, 1.0, side));
-    var alone = 0.0;
-    if root > 1.0 / FARTHEST_ROOT {
-        alone = min(greatest_weight(factors, orthogonal_polynomials(factors, z + side / root)), 1.0 - own);
-    }
-    let upper = select(1.0 - alone, own + alone, above == 1u);
+    let nearest = z + side / max(root, 1.0 / FARTHEST_ROOT);
+    let weight = min(greatest_weight(factors, orthogonal_polynomials(factors, nearest)), 1.0 - own);
+    // None is alone where all lie on one side.
+    let alone = select(0.0, weight, root > 1.0 / FARTHEST_ROOT && above != 0u && above != 3u);
+    let upper = select(1.0 - alone, own + alone, above < 2u);
     return vec2<f32>(max(upper - own, 0.0), min(upper, 1.0));
 }
 
