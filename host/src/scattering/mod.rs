@@ -23,7 +23,7 @@ pub use composite::Composite;
 pub use light_form::LightForm;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;
-pub use prefilter::{Prefilter, RANK_COLUMNS, Visibility};
+pub use prefilter::{Prefilter, RANK_BITS, RANK_COLUMNS, Visibility};
 pub use prefiltered::{Prefiltered, PrefilteredBound};
 pub use projective::{
     Choice, OBLIQUENESS_LIMIT, Projective, ProjectiveError, ProjectiveRows, ProjectiveSplit, choose,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a filter stores of every row, and the pass that does it: the part that methods differ in.
 
-use super::{BasisFormat, Settings, SettingsError, Weighting};
+use super::{BasisFormat, LightForm, Settings, SettingsError, Weighting};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError, Resource};
 use crate::resource::{Sampler, Texture};
@@ -25,6 +25,13 @@ pub enum Visibility {
 }
 
 impl Visibility {
+    /// What is best for epipolar rows of a light in a map of `columns`: rank queries where they can be asked, else
+    /// Fourier bases.
+    pub fn automatic(light: &LightForm, columns: u32) -> Self {
+        let plain = light.colors().is_none() && !light.local();
+        if plain && columns <= RANK_COLUMNS { Self::Rank { bits: RANK_BITS } } else { Self::Fourier }
+    }
+
     /// Its name at the command.
     pub fn name(self) -> &'static str {
         match self {
@@ -35,6 +42,8 @@ impl Visibility {
     }
 }
 
+/// Bits of a depth that suit most: an error next to nothing.
+pub const RANK_BITS: u32 = 12;
 /// Columns of the widest row that a rank structure takes.
 pub const RANK_COLUMNS: u32 = 2048;
 

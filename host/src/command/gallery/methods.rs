@@ -7,7 +7,7 @@ use super::studio::{AMPLIFIED, Studio, parameters};
 use crate::command::CommandError;
 use crate::command::bench::baselines::{Baseline, Competitor, with_baselines};
 use crate::core::Jitter;
-use crate::scattering::{Along, March, Prefiltered, Rectification, Settings, Weighting};
+use crate::scattering::{Along, March, Prefiltered, Rectification, Settings, Visibility, Weighting};
 use crate::{Stage, Texture};
 
 /// Methods side by side.
@@ -15,6 +15,13 @@ const COLUMNS: usize = 4;
 /// Bases without a window, and with one: below 8 there is none.
 const SERIES: [(u32, bool); 8] =
     [(4, false), (8, false), (16, false), (32, false), (8, true), (16, true), (32, true), (64, true)];
+/// The other ways to prefilter visibility.
+const OTHERS: [(Visibility, &str); 4] = [
+    (Visibility::Moments, "6 moments"),
+    (Visibility::Rank { bits: 8 }, "Rank queries of 8 bits"),
+    (Visibility::Rank { bits: 10 }, "Rank queries of 10 bits"),
+    (Visibility::Rank { bits: 12 }, "Rank queries of 12 bits"),
+];
 /// Steps at which a march is timed to find how many fit into a given time.
 const TIMED_STEPS: [u32; 2] = [16, 128];
 
@@ -49,11 +56,15 @@ pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, Com
 
     let mut entries = Vec::new();
     for (bases, window) in SERIES {
-        entries.push(series(studio, &stage, Settings { bases, window, ..settings })?);
+        let caption = format!("{bases} bases{}", if window { " with a window" } else { "" });
+        entries.push(series(studio, &stage, &caption, Settings { bases, window, ..settings })?);
     }
     let reference = rows.march(&Along::Rows(rows.map), Jitter::None, "reference")?;
     let exact = reference.scattered.read(&studio.gpu)?;
     entries.push(Entry { caption: "March of one step a texel: the reference".to_owned(), ..reference });
+    for (visibility, caption) in OTHERS {
+        entries.push(series(studio, &stage, caption, Settings { visibility, ..settings })?);
+    }
     entries.extend(rows.competitors()?);
     entries.extend(rows.same_time(budget, settings.map[0])?);
     let caption = format!("{} bases with a window, in that time", settings.bases);
@@ -89,18 +100,19 @@ pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, Com
     album.finish_with_sheet(COLUMNS as u32, "All of them, in the order of the pictures below")
 }
 
-/// A series without or with a window.
-fn series(studio: &Studio, stage: &Stage, settings: Settings) -> Result<Entry, CommandError> {
-    let Settings { bases, window, .. } = settings;
+/// A way to prefilter visibility.
+fn series(studio: &Studio, stage: &Stage, caption: &str, settings: Settings) -> Result<Entry, CommandError> {
     let prefiltered = Prefiltered::new(&studio.gpu, &studio.shaders, settings, studio.size)?;
     let bound = prefiltered.bind(&studio.gpu, &stage.inputs())?;
     let time = studio.time(&|encoder| prefiltered.record(encoder, &bound))?;
-    let (file, caption) = if window {
-        (format!("fourier_{bases}_window"), format!("{bases} bases with a window"))
-    } else {
-        (format!("fourier_{bases}"), format!("{bases} bases"))
+    let Settings { bases, window, visibility, .. } = settings;
+    let file = match visibility {
+        Visibility::Fourier if window => format!("fourier_{bases}_window"),
+        Visibility::Fourier => format!("fourier_{bases}"),
+        Visibility::Moments => "moments".to_owned(),
+        Visibility::Rank { bits } => format!("rank_{bits}"),
     };
-    Ok(Entry { file, caption, scattered: prefiltered.scattered, time })
+    Ok(Entry { file, caption: caption.to_owned(), scattered: prefiltered.scattered, time })
 }
 
 impl Rows<'_> {

@@ -28,10 +28,16 @@ pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, Com
         Some(maps) => (maps, "Shadow maps, one a view"),
         None => (&stage.pictures.shadow_map, "Standard shadow map"),
     };
+    let stored = shot.prefilter.stored();
+    let inner = if shot.prefilter.textures().len() > 1 {
+        ("cells.png", "Cells of the rank structure, a row each", plates::cells(gpu, stored)?)
+    } else {
+        ("bases.png", "Filtered bases 1, 5, 9 and so on", plates::bases(gpu, stored)?)
+    };
     for (file, caption, grey) in [
         ("shadow_map.png", caption, plates::depth(gpu, shadow_map)?),
         ("rectified.png", "Rectified map", plates::depth(gpu, &shot.rectified)?),
-        ("bases.png", "Filtered bases 1, 5, 9 and so on", plates::bases(gpu, shot.prefilter.stored())?),
+        inner,
     ] {
         album.add(file, caption, [grey.width, grey.height], &grey.pixels)?;
     }

@@ -69,6 +69,20 @@ pub fn bases(gpu: &Gpu, texture: &Texture) -> Result<Grey, CommandError> {
     Ok(halved(once.width, once.height, once.pixels))
 }
 
+/// Cells of a rank structure weighted by transmittance: which share of the texels left of its block lies before its chunk.
+pub fn cells(gpu: &Gpu, texture: &Texture) -> Result<Grey, CommandError> {
+    let [width, height, _] = texture.size();
+    // Chunks by blocks, equally many.
+    let blocks = width.isqrt().max(1);
+    let words = texture.read_words(gpu)?;
+    let share = |(index, cell): (usize, &[u32])| {
+        let texels = 32.0 * f64::from(index as u32 % blocks).max(1.0);
+        (f64::from(cell[1]) / 65535.0 / texels * 255.0).round() as u8
+    };
+    let pixels = words.chunks_exact(2).enumerate().map(share).collect();
+    Ok(halved(width, height, pixels))
+}
+
 /// Half the size, by means of 2x2 pixels, where that leaves anything.
 fn halved(width: u32, height: u32, pixels: Vec<u8>) -> Grey {
     if width < 2 || height < 2 {

@@ -6,7 +6,7 @@ use crate::command::bench::{Work, milliseconds};
 use crate::core::{DIRECTIONAL, Raster, Tonemap, View};
 use crate::scattering::{
     BasisFormat, Choice, Composite, Filtering, LightForm, March, Prefilter, Prefiltered, ProjectiveMap,
-    ProjectivePrefiltered, Settings, Start, Weighting, choose, epipole_near_picture,
+    ProjectivePrefiltered, Settings, Start, Visibility, Weighting, choose, epipole_near_picture,
 };
 use crate::scenes::{self, Scene};
 use crate::{Gpu, Shaders, Stage, Texture};
@@ -80,7 +80,8 @@ impl Studio {
         let depth_warp = light.local();
         let settings = Settings { light, epipole_march, depth_warp, ..self.settings() };
         if stage.camera.projection == 0 {
-            self.epipolar(stage, settings)
+            let visibility = Visibility::automatic(&light, settings.map[0]);
+            self.epipolar(stage, Settings { visibility, ..settings })
         } else {
             self.projective(stage, settings)
         }
@@ -158,7 +159,12 @@ impl Studio {
 
 fn rows(kind: &str, settings: Settings, bases: &Texture) -> String {
     let ([columns, rows], [.., layers]) = (settings.map, bases.size());
-    format!("{kind}, {columns}x{rows}, {} bases in {layers} layers", settings.bases)
+    let stored = match settings.visibility {
+        Visibility::Fourier => format!("{} bases in {layers} layers", settings.bases),
+        Visibility::Moments => "6 moments".to_owned(),
+        Visibility::Rank { bits } => format!("rank queries of {bits} bits"),
+    };
+    format!("{kind}, {columns}x{rows}, {stored}")
 }
 
 /// What made the picture of a scene.

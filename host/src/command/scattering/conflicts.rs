@@ -101,7 +101,7 @@ fn march(flags: &Options) -> Vec<Rule> {
 
 fn methods(flags: &Options) -> Vec<Rule> {
     let other = matches!(flags.method, MethodSpelling::Moments | MethodSpelling::Rank);
-    let rank = matches!(flags.visibility(), Visibility::Rank { .. });
+    let rank = matches!(flags.visibility(&flags.form()), Visibility::Rank { .. });
     const BASES: &str = "it is of Fourier bases: leave it out, or take --method fourier";
     vec![
         (

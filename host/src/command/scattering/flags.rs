@@ -5,7 +5,7 @@ use super::conflicts;
 use crate::command::CommandError;
 use crate::command::parse::{self, DepthSpelling, LightSpelling, Projection};
 use crate::core::{Cascades, Jitter};
-use crate::scattering::{RANK_COLUMNS, Reference, Resolution, Visibility};
+use crate::scattering::{LightForm, RANK_BITS, Reference, Resolution, Visibility};
 use clap::ValueEnum;
 use glam::Vec3;
 use std::path::PathBuf;
@@ -110,8 +110,6 @@ impl ReferenceSpelling {
 
 /// Splits of projective rows where none are asked for.
 pub const SPLITS: u32 = 3;
-/// Bits of a depth, where the flag does not say.
-pub const RANK_BITS: u32 = 12;
 
 /// Flags of the command. Every flag but --mesh and --out has a default.
 #[derive(clap::Args)]
@@ -244,6 +242,17 @@ impl Options {
         self.camera == Projection::Orthographic || self.start == Some(StartSpelling::NearPlane)
     }
 
+    /// The form of the light.
+    pub fn form(&self) -> LightForm {
+        let point = matches!(self.light, LightSpelling::Point { .. });
+        LightForm {
+            spot: matches!(self.light, LightSpelling::Spot { .. }),
+            point,
+            shadow_array: point || self.cascades.is_some(),
+            texture: self.light_texture.is_some(),
+        }
+    }
+
     /// True where a flag says that there are Fourier bases.
     pub fn asks_for_bases(&self) -> bool {
         let projective = self.rectification == RectificationSpelling::Projective;
@@ -251,17 +260,17 @@ impl Options {
     }
 
     /// How visibility is prefiltered, unless it is marched.
-    pub fn visibility(&self) -> Visibility {
+    pub fn visibility(&self, form: &LightForm) -> Visibility {
         let rank = Visibility::Rank { bits: self.bits.unwrap_or(RANK_BITS) };
-        let weighted = self.local() || self.light_texture.is_some();
         let perspective = self.camera == Projection::Perspective;
         match self.method {
             MethodSpelling::Fourier | MethodSpelling::March => Visibility::Fourier,
             MethodSpelling::Moments => Visibility::Moments,
             MethodSpelling::Rank => rank,
             MethodSpelling::Auto => {
-                let fits = perspective && !weighted && self.map[0] <= RANK_COLUMNS;
-                if fits && !self.asks_for_bases() { rank } else { Visibility::Fourier }
+                let best = Visibility::automatic(form, self.map[0]);
+                let fits = perspective && !self.asks_for_bases() && best != Visibility::Fourier;
+                if fits { rank } else { Visibility::Fourier }
             }
         }
     }

@@ -110,7 +110,7 @@ fn automatic(
 ) -> Plan {
     let march = |reason: &str| Plan { rows: Rows::None, reason: format!("none, marched instead ({reason})") };
     let epipolar = |reason: &str| Plan { rows: Rows::Epipolar, reason: format!("epipolar ({reason})") };
-    let bases = flags.visibility() == Visibility::Fourier;
+    let bases = flags.visibility(&form) == Visibility::Fourier;
     if bases && form.plain() && flags.reference == ReferenceSpelling::Bisectrix {
         let mut rows = Vec::new();
         for camera in cameras {
