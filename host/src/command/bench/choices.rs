@@ -6,8 +6,8 @@ use super::{Row, figure};
 use crate::command::CommandError;
 use crate::core::{Raster, direction_from_angles};
 use crate::scattering::{
-    BasisFormat, Filtering, Prefiltered, ProjectiveMap, ProjectivePrefiltered, Reference, Settings,
-    epipole_near_picture, projective_rows,
+    BasisFormat, Filtering, Prefiltered, ProjectiveMap, ProjectivePrefiltered, RANK_BITS, Reference,
+    Settings, Visibility, epipole_near_picture, projective_rows,
 };
 use crate::scenes::{self, Scene};
 use crate::{Gpu, Lighting, Shaders, Stage};
@@ -76,11 +76,16 @@ fn reference_ray(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError>
 fn epipole(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let stage = staged(gpu, shaders, &scene("sun")?)?;
     let mut rows = Vec::new();
-    for (label, depth_warp, epipole_march) in
-        [("nothing", false, false), ("depth_warp", true, false), ("march", false, true)]
-    {
-        let settings =
-            Settings { depth_warp, epipole_march, filtering: Filtering::Linear, ..Settings::tuned(gpu) };
+    let rank = Visibility::Rank { bits: RANK_BITS };
+    for (label, visibility, depth_warp, epipole_march) in [
+        ("nothing", Visibility::Fourier, false, false),
+        ("depth_warp", Visibility::Fourier, true, false),
+        ("march", Visibility::Fourier, false, true),
+        ("rank", rank, false, false),
+        ("rank_march", rank, false, true),
+    ] {
+        let tuned = Settings { filtering: Filtering::Linear, ..Settings::tuned(gpu) };
+        let settings = Settings { visibility, depth_warp, epipole_march, ..tuned };
         let value = radiance_error(gpu, shaders, &stage, settings)?;
         rows.push(figure(SYSTEM, format!("epipole_{label}_radiance_error"), value, "fraction"));
     }

@@ -6,14 +6,14 @@ use super::plates;
 use super::studio::{AMPLIFIED, STEPS, Studio, parameters};
 use crate::command::CommandError;
 use crate::core::Camera;
-use crate::scattering::{Prefiltered, Settings};
+use crate::scattering::{Prefiltered, RANK_BITS, Settings, Visibility};
 use crate::{Stage, Texture};
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
 use image::imageops::{FilterType, crop_imm, resize};
 
 /// Remedies side by side.
-const COLUMNS: u32 = 4;
+const COLUMNS: u32 = 5;
 /// How much the surroundings of the sun are enlarged.
 const ENLARGED: u32 = 4;
 
@@ -23,6 +23,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let settings = studio.settings();
     let nothing = Settings { epipole_march: false, ..settings };
     let warp = Settings { depth_warp: true, ..nothing };
+    let rank = Settings { visibility: Visibility::Rank { bits: RANK_BITS }, ..settings };
     let (reference, reference_time) = studio.march(&stage)?;
     let exact = reference.read(&studio.gpu)?;
     let mut entries = Vec::new();
@@ -30,6 +31,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         ("nothing", "Nothing done", nothing),
         ("warp", "Depth warp", warp),
         ("march", "Marched where rays cover fewer than 8 texels", settings),
+        ("rank", "The same with rank queries", rank),
     ] {
         let (scattered, time) = evaluate(studio, &stage, settings)?;
         entries.push((file, format!("{caption}, {time:.0} ms"), scattered));
@@ -56,11 +58,14 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     for (file, caption, pixels) in rows.iter().flatten() {
         album.add_tile(file, caption, studio.size, pixels)?;
     }
-    if let Some((.., scattered)) = entries.get(2) {
+    if let Some((.., scattered)) = entries.get(3) {
         let composed = studio.compose(&stage, scattered)?;
         album.add("final.png", "Final picture", studio.size, &studio.pixels(&composed, scene.exposure)?)?;
     }
-    album.finish_with_sheet(COLUMNS, "Nothing done, depth warp, marched around the sun, all marched")
+    album.finish_with_sheet(
+        COLUMNS,
+        "Nothing done, depth warp, marched around the sun, with rank queries, all marched",
+    )
 }
 
 /// Scattered light by the settings, and milliseconds from the shadow map on.
