@@ -180,12 +180,12 @@ fn moment_bounds(moments: Moments, depth: f32) -> vec2<f32> {
     let slope = first - 3.0 * third + z * (4.0 * second + 12.0 * z * third);
     let cubic = own * vec3<f32>(slope, 2.0 * second + 12.0 * z * third, 4.0 * third);
     // The root that lies alone on its side is the greatest in t, or the least, which is the greatest of the mirrored cubic.
-    let side = select(-1.0, 1.0, above == 1u);
+    // Where all lie on the other side that root is negative, and no weight is alone.
+    let side = select(-1.0, 1.0, above < 2u);
     let root = greatest_cubic_root(cubic * vec3<f32>(side, 1.0, side));
     let nearest = z + side / max(root, 1.0 / FARTHEST_ROOT);
     let weight = min(greatest_weight(factors, orthogonal_polynomials(factors, nearest)), 1.0 - own);
-    // None is alone where all lie on one side.
-    let alone = select(0.0, weight, root > 1.0 / FARTHEST_ROOT && above != 0u && above != 3u);
+    let alone = select(0.0, weight, root > 1.0 / FARTHEST_ROOT);
     let upper = select(1.0 - alone, own + alone, above < 2u);
     return vec2<f32>(max(upper - own, 0.0), min(upper, 1.0));
 }
