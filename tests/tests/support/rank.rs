@@ -50,7 +50,7 @@ impl Structure {
         let inputs = Inputs {
             camera: &Buffer::uniform(gpu(), &gpu::host_camera(&camera, [1, 1])),
             light: &Buffer::uniform(gpu(), &gpu::host_light(up, matrix, 1.0, Vec3::ONE)),
-            // With this extinction the radius of a slice is its optical depth.
+            // With this extinction the radius of a slice over its reference is its optical depth.
             medium: &Buffer::uniform(gpu(), &Medium::new(1.0, Vec3::ONE, 0.0, 1.0).unwrap()),
             depth: &depth,
             shadow_map: &depth,
@@ -70,11 +70,11 @@ impl Structure {
         gpu().submit(encoder).unwrap();
     }
 
-    /// Builds it over the rows with texels of an optical depth, and returns what f32 makes of that.
+    /// Builds it over the rows with texels of an optical depth on a reference ray, and returns what f32 makes of that.
     pub fn build_weighted(&self, rows: &[Vec<f32>], optical_step: f32) -> f32 {
         let width = rows[0].len() as f32;
         let radius = optical_step * width;
-        let slices: Vec<f32> = rows.iter().flat_map(|_| [0.1, 1.2, radius, 1.0]).collect();
+        let slices: Vec<f32> = rows.iter().flat_map(|_| [0.1, 1.2, 0.5 * radius, 0.5]).collect();
         self.method.rectification.slices.write(gpu(), &slices).unwrap();
         self.build(rows);
         radius / width
