@@ -10,11 +10,15 @@
 // note: left are columns inside the last block: bit planes of their values are compared with the ray's value, 32 at once.
 // note: Weighted means: exact but for the ranks of the last chunk, of which the mask tells how many are meant but not
 // note: which. They get the mean weight of their chunk. With n of N ranks meant and weights 1 .. e^-t left of the block the
-// note: error is at most n (N - n) / N (1 - e^-t) <= 8 (1 - e^-t); the row's weight is (1 - e^-t) / (1 - e^-a) or more, so
-// note: that visibility errs by at most 8 (1 - e^-a), with a the optical depth of a texel; on average far less. Storing
-// note: weights with 16 bits adds at most columns 2^-17 over the row's weight.
+// note: error is at most n (N - n) / N (1 - e^-t) <= 8 (1 - e^-t). In the last block the weights of eight columns become
+// note: that of their middle. For the first m of eight, in units of the first, that is too little by at most
+// note: 3.5 (1 - e^-(a m)) for the columns before the middle and too much by at most 4 (1 - e^-(a m)) for those behind it,
+// note: a the optical depth of a texel; over m columns of the block at most 4 e^-t (1 - e^-(a m)). All is at most
+// note: 8 (1 - e^-(t + a m)), and the row's weight (1 - e^-(t + a m)) / (1 - e^-a) or more, so that visibility errs by at
+// note: most 8 (1 - e^-a); on average by a thirtieth of it. Storing weights with 16 bits adds at most columns 2^-17 over
+// note: the row's weight.
 
-#import airlight::core::prefix_sum::{one_minus_exp, prefix_weight}
+#import airlight::core::prefix_sum::one_minus_exp
 
 /// Steps of a stored weight.
 const WEIGHT_STEPS: f32 = 65535.0;
@@ -39,6 +43,13 @@ fn less_by_planes(less: u32, planes: vec4<u32>, limit: u32) -> u32 {
     result = select(result & ~planes.y, result | ~planes.y, (limit & 2u) != 0u);
     result = select(result & ~planes.z, result | ~planes.z, (limit & 4u) != 0u);
     return select(result & ~planes.w, result | ~planes.w, (limit & 8u) != 0u);
+}
+
+/// Weight of the first `texels` texels of a row, fractional, in units of the first one's. Unlike `prefix_weight` it keeps
+/// to the weights of the cells where the optical depth of a texel is next to nothing, but not that of the row.
+fn stretch_weight(optical_step: f32, texels: f32) -> f32 {
+    let thickness = max(optical_step, 1e-30);
+    return one_minus_exp(thickness * texels) / one_minus_exp(thickness);
 }
 
 /// Where a query lies in the structure.
@@ -102,7 +113,7 @@ fn rank_visibility_weighted(
     let blocks = (columns + 31u) / 32u;
     let cell = textureLoad(cells, vec2<u32>(at.cell, row), 0).xy;
     let block_begin = f32(at.column & ~31u);
-    let before = prefix_weight(optical_step, block_begin);
+    let before = stretch_weight(optical_step, block_begin);
     // Where the next chunk begins, all ranks of this one are counted; after the last chunk all ranks are.
     let next = at.cell + blocks;
     let stored = f32(textureLoad(cells, vec2<u32>(min(next, blocks * blocks - 1u), row), 0).y) / WEIGHT_STEPS;
@@ -119,7 +130,7 @@ fn rank_visibility_weighted(
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xff00u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xffu));
     let first = exp(-optical_step * block_begin);
-    let last = prefix_weight(optical_step, at.part) * exp(-optical_step * f32(inside));
+    let last = stretch_weight(optical_step, at.part) * exp(-optical_step * f32(inside));
     let inner = columns_dark * exp(-3.5 * optical_step) + select(0.0, last, ((at.less >> inside) & 1u) != 0u);
-    return clamp(1.0 - (ranks + first * inner) / prefix_weight(optical_step, at.covered), 0.0, 1.0);
+    return clamp(1.0 - (ranks + first * inner) / stretch_weight(optical_step, at.covered), 0.0, 1.0);
 }

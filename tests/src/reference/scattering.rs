@@ -18,6 +18,7 @@ mod moments;
 mod picture;
 mod projective;
 mod quadrature;
+mod rank;
 mod reference_ray;
 mod shadow_map;
 mod slice;
@@ -39,6 +40,7 @@ pub use moments::{chebyshev_moments, signed_depth, visibility_bounds};
 pub use picture::{Light, Medium, Picture, Pixel, Scene, Start, ViewRay, picture};
 pub use projective::{Drift, Failure, Projective, light_in_view, projective_picture};
 pub use quadrature::integrate;
+pub use rank::{SteppedRow, depth_step};
 pub use reference_ray::{
     Fan, ReferenceRay, ReferenceRayError, filtered_bases, filtered_visibility, reference_ray_error,
 };
