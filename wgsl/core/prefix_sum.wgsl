@@ -41,8 +41,9 @@ fn one_minus_exp(x: f32) -> f32 {
 }
 
 /// Weight of the first `texels` texels of a row, fractional, in units of the first texel's. `optical_step`: optical
-/// depth of one texel; zero, or little, gives the number of texels.
+/// depth of one texel; zero gives the number of texels. Relative error below 2e-6.
 fn prefix_weight(optical_step: f32, texels: f32) -> f32 {
-    let first = one_minus_exp(optical_step);
-    return select(texels, one_minus_exp(optical_step * texels) / max(first, 1e-30), first > 1e-6);
+    // So thin that 1 - exp(-x) is x.
+    let thickness = max(optical_step, 1e-30);
+    return one_minus_exp(thickness * texels) / one_minus_exp(thickness);
 }

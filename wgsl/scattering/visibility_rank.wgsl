@@ -18,7 +18,7 @@
 // note: most 8 (1 - e^-a); on average by a thirtieth of it. Storing weights with 16 bits adds at most columns 2^-17 over
 // note: the row's weight.
 
-#import airlight::core::prefix_sum::one_minus_exp
+#import airlight::core::prefix_sum::prefix_weight
 
 /// Steps of a stored weight.
 const WEIGHT_STEPS: f32 = 65535.0;
@@ -43,13 +43,6 @@ fn less_by_planes(less: u32, planes: vec4<u32>, limit: u32) -> u32 {
     result = select(result & ~planes.y, result | ~planes.y, (limit & 2u) != 0u);
     result = select(result & ~planes.z, result | ~planes.z, (limit & 4u) != 0u);
     return select(result & ~planes.w, result | ~planes.w, (limit & 8u) != 0u);
-}
-
-/// Weight of the first `texels` texels of a row, fractional, in units of the first one's. Unlike `prefix_weight` it keeps
-/// to the weights of the cells where the optical depth of a texel is next to nothing, but not that of the row.
-fn stretch_weight(optical_step: f32, texels: f32) -> f32 {
-    let thickness = max(optical_step, 1e-30);
-    return one_minus_exp(thickness * texels) / one_minus_exp(thickness);
 }
 
 /// Where a query lies in the structure.
@@ -113,7 +106,7 @@ fn rank_visibility_weighted(
     let blocks = (columns + 31u) / 32u;
     let cell = textureLoad(cells, vec2<u32>(at.cell, row), 0).xy;
     let block_begin = f32(at.column & ~31u);
-    let before = stretch_weight(optical_step, block_begin);
+    let before = prefix_weight(optical_step, block_begin);
     // Where the next chunk begins, all ranks of this one are counted; after the last chunk all ranks are.
     let next = at.cell + blocks;
     let stored = f32(textureLoad(cells, vec2<u32>(min(next, blocks * blocks - 1u), row), 0).y) / WEIGHT_STEPS;
@@ -130,7 +123,7 @@ fn rank_visibility_weighted(
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xff00u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xffu));
     let first = exp(-optical_step * block_begin);
-    let last = stretch_weight(optical_step, at.part) * exp(-optical_step * f32(inside));
+    let last = prefix_weight(optical_step, at.part) * exp(-optical_step * f32(inside));
     let inner = columns_dark * exp(-3.5 * optical_step) + select(0.0, last, ((at.less >> inside) & 1u) != 0u);
-    return clamp(1.0 - (ranks + first * inner) / stretch_weight(optical_step, at.covered), 0.0, 1.0);
+    return clamp(1.0 - (ranks + first * inner) / prefix_weight(optical_step, at.covered), 0.0, 1.0);
 }
