@@ -4,7 +4,13 @@
 // source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
 // note: Unlike algorithm modules a callback holds bindings, those that passes share. An engine that keeps its shadow maps
 // note: in another way replaces this file: only `lit_at` and `marched_visibility` read them.
-// note: Definitions SHADOW_ARRAY and LIGHT_TEXTURE as in the passes.
+// definition SHADOW_ARRAY: shadow maps of several views.
+// definition LIGHT_TEXTURE: a texture colours the light.
+// binding shadow_map: depth of the standard shadow map; without SHADOW_ARRAY.
+// binding shadow_maps: depth of the views, a layer each; with SHADOW_ARRAY only.
+// binding shadow_views: the views; with SHADOW_ARRAY only.
+// binding light_texture: linear RGB 0..1 over the whole shadow map; with LIGHT_TEXTURE only.
+// binding light_sampler: linear, clamped to the edge; with LIGHT_TEXTURE only.
 
 #import airlight::core::light::{Light, direction_to_light, angular_falloff, light_texture_color}
 #import airlight::core::phase::henyey_greenstein

@@ -4,7 +4,20 @@
 // source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4; visibility_rank and visibility_moments for the others.
 // note: Unlike algorithm modules a callback holds bindings, those that passes share. All methods answer the same question:
 // note: which share of the first texels of a row is lit at the depth of a ray.
-// note: Definitions: RANK, MOMENTS or neither for Fourier bases; BASES, LANCZOS, NEAREST and COLORS as in the passes.
+// definition RANK: rank queries, bits of a depth as in the pass `rank`; Fourier bases without RANK and MOMENTS.
+// definition MOMENTS: six moments.
+// definition AVERAGE: what was stored holds plain means.
+// definition BASES: number M of Fourier bases, as in the filter.
+// definition COLORS: colours of the light, as in the filter; Fourier bases only.
+// definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
+// definition NEAREST: the nearest row, and the nearest texel of what was stored, instead of a bilinear blend; no sampler.
+// binding rank_cells: what `rank` makes, rg32uint; with RANK only.
+// binding rank_starts: the same, r32uint; with RANK only.
+// binding rank_planes: the same, rgba32uint; with RANK only.
+// binding rectified: the rectified map, of which only the size is read; with RANK only.
+// binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
+// binding bases: what `filter` makes, rgba8unorm or rgba16float; without RANK and MOMENTS.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v; with Fourier bases, absent with NEAREST.
 
 #import airlight::scattering::rows::prefix_column
 #import airlight::scattering::visibility_fourier::{
