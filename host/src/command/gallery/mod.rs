@@ -45,7 +45,7 @@ enum Subject {
 }
 
 /// What is shown where nothing is chosen.
-const ALL: [Subject; 9] = [
+const ALL: [Subject; 10] = [
     Subject::Scene("foliage"),
     Subject::Scene("terrain"),
     Subject::Scene("torus"),
@@ -54,6 +54,7 @@ const ALL: [Subject; 9] = [
     Subject::Methods("foliage"),
     Subject::Methods("plane"),
     Subject::Methods("terrain"),
+    Subject::Methods("torus"),
     Subject::Epipole,
 ];
 
@@ -142,7 +143,7 @@ mod tests {
             assert!(choose(Some(&format!("scattering/{}", subject.name()))).unwrap().contains(&subject));
             assert_eq!(choose(Some(&subject.folder())).unwrap(), [subject]);
         }
-        assert_eq!(choose(Some("scattering/methods")).unwrap().len(), 3);
+        assert_eq!(choose(Some("scattering/methods")).unwrap().len(), 4);
         assert_eq!(choose(Some("scattering/spot")).unwrap(), [Subject::Scene("spot")]);
     }
 
