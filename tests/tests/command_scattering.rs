@@ -1,58 +1,31 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! `airlight scattering` with every light and every input, each against a march of the same setup, and with flags that
-//! cannot be meant. What it does with bad files and numbers is tested in `command.rs`.
+//! `airlight scattering` with every light and every input, each against a march of the same setup. Flags that cannot
+//! be meant are tested in `command_scattering_refusals.rs`, bad files and numbers in `command.rs`.
 //!
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/command.rs"]
 mod command;
-#[path = "support/gpu.rs"]
-mod gpu;
+#[path = "support/hall.rs"]
+mod hall;
 #[path = "support/npy.rs"]
 mod npy;
 
-use airlight::core::Jitter;
-use airlight::scattering::{
-    LightForm, March, Method, Prefiltered, Resolution, Settings, ViewSettings, Views, Weighting, choose,
-    projective_rows,
-};
 use airlight_tests::error::relative_rmse;
-use command::{airlight_with, files, refuses, succeeds};
+use command::{files, succeeds};
 use glam::Vec3;
-use gpu::{gpu, shaders};
+use hall::{EYE, scene};
 use std::collections::BTreeMap;
 use std::path::Path;
-use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [96, 64];
-/// The eye and the light of most setups.
-const EYE: &str = "--eye 0.5,1.2,6 --target 0,1.1,0";
+/// Setups with a light each.
 const SUN: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light directional:95,35";
 const SPOT: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light spot:-2,4,1,0,0.5,0,30";
 const POINT: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light point:-1.5,1.5,0.5";
 const ORTHOGRAPHIC: &str =
     "--camera orthographic --eye 0.5,2,6 --target 0,1.1,0 --height 5 --near 1 --far 14";
-
-/// A ground, and over it a plate and a wall.
-fn scene() -> TempDir {
-    let at = tempfile::tempdir().unwrap();
-    let quads = [
-        "v -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\n",
-        "v -1.6 2 -1.2\nv 1.3 2 -1.2\nv 1.3 2 1.4\nv -1.6 2 1.4\n",
-        "v 1.6 0 -1.5\nv 1.8 1.9 -1.5\nv 1.8 1.9 1.1\nv 1.6 0 1.1\n",
-    ];
-    let faces = "f 1 4 3 2\nf 5 8 7 6\nf 9 12 11 10\n";
-    std::fs::write(at.path().join("hall.obj"), quads.concat() + faces).unwrap();
-    // As large, and without shadows above the ground.
-    let bare = format!("{}v 1.8 2 0\nf 1 4 3 2\n", quads[0]);
-    std::fs::write(at.path().join("bare.obj"), bare).unwrap();
-    let glass = image::RgbImage::from_fn(8, 8, |x, y| {
-        image::Rgb([if (x / 2 + y / 2) % 2 == 1 { 255 } else { 120 }, if x < 4 { 200 } else { 90 }, 160])
-    });
-    glass.save(at.path().join("glass.png")).unwrap();
-    at
-}
 
 /// What a run left behind.
 struct Run {
@@ -404,187 +377,23 @@ fn the_rows_are_told_unless_quiet() {
 }
 
 #[test]
-fn flags_that_cannot_be_meant_are_refused() {
-    let at = scene();
-    std::fs::write(at.path().join("no.png"), "no picture").unwrap();
-    let refused = |flags: &str, code: i32, parts: &[&str]| {
-        let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr", "--size", "32x24"];
-        arguments.extend(["--map", "64x64"].into_iter().chain(flags.split(' ')));
-        refuses(at.path(), &arguments, code, parts);
-        // Before any GPU work: where there is no adapter it is said as well.
-        let nowhere = at.path().join("no-driver.json").display().to_string();
-        let none = [("VK_DRIVER_FILES", nowhere.as_str()), ("VK_ICD_FILENAMES", nowhere.as_str())];
-        let ended = airlight_with(at.path(), &arguments, &none);
-        assert!(ended.code == code && !ended.err.contains("no GPU adapter"), "{flags}: {}", ended.err);
-    };
-    let bad = |flags: &str, parts: &[&str]| refused(flags, 2, parts);
-    // Values.
-    bad("--light spot:0,1,0,0,0,0,90", &["--light", "80"]);
-    bad("--light area:1", &["--light", "not there yet"]);
-    for count in ["0", "7", "many", "-1"] {
-        bad(&format!("--cascades={count}"), &["--cascades", count]);
-    }
-    bad("--camera fisheye", &["--camera", "fisheye", "orthographic"]);
-    bad("--depth-range backward", &["--depth-range", "backward", "infinite"]);
-    bad("--samples 2", &["--samples", "`2`", "1 and 4"]);
-    for metres in ["0", "-1", "nan", "wide"] {
-        bad(&format!("--stereo={metres}"), &["--stereo", metres]);
-    }
-    for metres in ["0", "-3"] {
-        bad(&format!("--camera orthographic --height={metres}"), &["--height", metres]);
-    }
-    bad("--camera orthographic --near 3 --far 2", &["--near, --far", "3", "2"]);
-    bad("--depth-range infinite --near 3 --far 2", &["--near, --far", "3", "2"]);
-    bad("--rectification polar", &["--rectification", "polar", "epipolar"]);
-    bad("--splits 5", &["--splits", "5"]);
-    bad("--regions 0", &["--regions", "0"]);
-    bad("--regions 9", &["--regions", "9"]);
-    bad("--resolution third", &["--resolution", "third", "quarter"]);
-    bad("--method march --jitter white", &["--jitter", "white", "blue-noise"]);
-    bad("--method march --jitter gradient --frame -1", &["--frame", "-1"]);
-    bad("--start nowhere", &["--start", "nowhere", "near-plane"]);
-    bad("--reference worst", &["--reference", "worst", "optimum"]);
-    bad("--radiance 20000,1,1", &["--radiance", "1e4"]);
-    bad("--light point:0,3,0 --radiance 1e9,1,1", &["--radiance", "1e8"]);
-    refused("--light-texture none.png", 1, &["--light-texture", "none.png"]);
-    refused("--light-texture no.png", 1, &["--light-texture", "no.png"]);
-    // Together.
-    let orthographic = "--camera orthographic";
-    let (spot, point) = ("--light spot:0,4,0,0,0,0.1,30", "--light point:0,3,0");
-    bad(&format!("{orthographic} --fov 30"), &["--fov", "--height"]);
-    bad("--height 3", &["--height", "--fov"]);
-    bad(&format!("{orthographic} --depth-range infinite"), &["--depth-range", "reversed"]);
-    bad(&format!("{orthographic} --stereo 0.1"), &["--stereo", "perspective"]);
-    bad(&format!("{orthographic} --start eye"), &["--start", "near plane"]);
-    bad(&format!("{point} --light-texture glass.png"), &["--light-texture", "spot"]);
-    bad(&format!("{spot} --cascades 2"), &["--cascades", "leave them out"]);
-    bad(&format!("{point} --cascades 2"), &["--cascades", "leave them out"]);
-    for flag in ["--rectification projective", "--splits 2", "--regions 2", "--reference optimum"] {
-        bad(&format!("--method march {flag}"), &[flag.split(' ').next().unwrap(), "--method fourier"]);
-    }
-    for method in ["rank", "moments"] {
-        for flag in ["--bases 16", "--half", "--regions 2", "--splits 2", "--rectification projective"] {
-            let parts = [flag.split(' ').next().unwrap(), "--method fourier"];
-            bad(&format!("--method {method} {flag}"), &parts);
-        }
-        for other in [spot, point, orthographic, "--light-texture glass.png"] {
-            bad(&format!("--method {method} {other}"), &["--method", "take auto"]);
-        }
-    }
-    for bits in ["7", "13", "ten"] {
-        bad(&format!("--bits {bits}"), &["--bits", bits]);
-    }
-    for other in ["--method fourier", "--method march", "--half", spot] {
-        bad(&format!("--bits 10 {other}"), &["--bits", "--method rank"]);
-    }
-    // The map of these runs is given already.
-    bad("--method march --start near-plane", &["--start", "--method fourier"]);
-    bad("--jitter gradient", &["--jitter", "--method march"]);
-    bad(&format!("--method march {spot} --jitter gradient"), &["--jitter", "leave it out"]);
-    bad("--method march --cascades 2 --jitter blue-noise", &["--jitter", "leave it out"]);
-    bad("--method march --frame 3", &["--frame", "--jitter"]);
-    for light in [spot, point] {
-        bad(&format!("{light} --rectification projective"), &["--rectification", "take auto"]);
-        bad(&format!("{light} --regions 2"), &["--regions", "leave it out"]);
-        bad(&format!("{light} --start near-plane"), &["--start", "leave it out"]);
-        bad(&format!("{light} --splits 2"), &["--splits", "leave it out"]);
-        bad(&format!("{light} --reference optimum"), &["--reference", "leave it out"]);
-    }
-    bad("--light-texture glass.png --rectification projective", &["--rectification", "take auto"]);
-    bad("--light-texture glass.png --regions 2", &["--regions", "leave it out"]);
-    bad("--light-texture glass.png --start near-plane", &["--start", "leave it out"]);
-    bad("--cascades 2 --rectification projective", &["--rectification", "take auto"]);
-    bad("--rectification epipolar --splits 2", &["--splits", "leave it out"]);
-    bad("--rectification projective --reference optimum", &["--reference", "leave it out"]);
-    bad(&format!("{orthographic} --rectification epipolar"), &["--rectification", "take auto"]);
-    bad(&format!("{orthographic} --splits 2"), &["--splits", "leave it out"]);
-    bad(&format!("{orthographic} --reference optimum"), &["--reference", "leave it out"]);
-    // What only camera and light together say.
-    let ahead = format!("{EYE} --light directional:185,12 --rectification projective");
-    bad(&ahead, &["--rectification", "`projective`", "in the picture", "auto"]);
-    let behind = format!("{EYE} --light directional:5,-2 --rectification projective");
-    bad(&behind, &["--rectification", "`projective`", "opposite to the light", "auto"]);
-    let along = format!("{orthographic} --eye 0,1,5 --target 0,1,0 --light directional:0,0");
-    bad(&format!("{along} --rectification projective"), &["--rectification", "parallel", "auto"]);
-    let lamp = "--eye 0,2,5 --light point:0,2,5 --rectification epipolar";
-    bad(lamp, &["--rectification", "`epipolar`", "march"]);
-}
-
-#[test]
 fn awkward_sizes_draw() {
     let at = scene();
     for flags in [
-        "--size 1x1 --map 1x1 --shadow-map 1x1 --splits 4",
-        "--size 5x3 --map 2x3 --shadow-map 1x1 --regions 8 --resolution quarter",
-        "--size 1x1 --map 3x1 --light point:0,3,0 --resolution half",
-        "--size 3x2 --map 1x2 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png",
+        "--size 1x1 --map 1x1 --shadow-map 1x1 --bases 4 --splits 4",
+        "--size 5x3 --map 2x3 --shadow-map 1x1 --bases 4 --regions 8 --resolution quarter",
+        "--size 1x1 --map 3x1 --bases 4 --light point:0,3,0 --resolution half",
+        "--size 3x2 --map 1x2 --bases 4 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png",
+        "--size 1x1 --map 1x1 --shadow-map 1x1 --method rank",
+        "--size 5x3 --map 33x2 --shadow-map 1x1 --method rank --bits 8 --resolution quarter --start near-plane",
+        "--size 3x2 --map 1x2 --shadow-map 1x2 --method moments --start near-plane",
+        // Wider than rank queries take: bases.
+        "--size 3x2 --map 2049x2 --shadow-map 2x2",
     ] {
-        let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr", "--bases", "4"];
+        let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr"];
         arguments.extend(flags.split(' '));
         succeeds(at.path(), &arguments);
         let picture = image::open(at.path().join("x.exr")).unwrap().into_rgba32f();
         assert!(picture.as_raw().iter().all(|value| value.is_finite()), "{flags}");
     }
-}
-
-#[test]
-fn views_of_one_call_are_those_of_their_own() {
-    let _turn = gpu::turn();
-    let scene = gpu::torus_over_plane();
-    let stage = scene.stage([64, 48], [256, 256]);
-    let settings = Settings { map: [128, 128], ..Settings::default() };
-    let (camera, light) = (stage.camera, &stage.light);
-    let limit = stage.medium.distance_limit;
-    let march = Method::March {
-        form: LightForm::default(),
-        steps: 64,
-        weighting: Weighting::Transmittance,
-        jitter: Jitter::None,
-        frame: 0,
-    };
-    let mut views = vec![
-        ViewSettings { camera, resolution: None, method: Method::Epipolar(settings) },
-        ViewSettings { camera, resolution: None, method: march.clone() },
-        ViewSettings { camera, resolution: Some(Resolution::Half), method: march.clone() },
-    ];
-    let rows = projective_rows(&camera, light.direction, limit, 2);
-    println!("{:?}", choose(&camera, light.direction, limit, 2));
-    views.extend(rows.map(|rows| ViewSettings {
-        camera,
-        resolution: None,
-        method: Method::Projective(settings, Box::new(rows)),
-    }));
-    let record = |views: &[ViewSettings]| {
-        let made = Views::new(gpu(), shaders(), views).unwrap();
-        let inputs = vec![stage.inputs(); views.len()];
-        let bound = made.bind(gpu(), &inputs).unwrap();
-        let mut encoder = gpu().encoder();
-        made.record(&mut encoder, &bound);
-        gpu().submit(encoder).unwrap();
-        made.views.iter().map(|view| view.scattered().read(gpu()).unwrap()).collect::<Vec<_>>()
-    };
-    let together = record(&views);
-    for (view, picture) in views.iter().zip(&together) {
-        assert!(record(std::slice::from_ref(view))[0] == *picture, "{:?}", view.method);
-        assert_eq!(picture.len(), 64 * 48 * 4);
-    }
-    // And those of the passes by themselves.
-    let alone = Prefiltered::new(gpu(), shaders(), settings, [64, 48]).unwrap();
-    let bound = alone.bind(gpu(), &stage.inputs()).unwrap();
-    let mut encoder = gpu().encoder();
-    alone.record(&mut encoder, &bound);
-    let along = airlight::scattering::Along::ShadowMap { steps: 64 };
-    let marched = March::new(gpu(), shaders(), &along, Weighting::Transmittance, [64, 48]).unwrap();
-    let bound = marched.bind(gpu(), &stage.inputs(), &along).unwrap();
-    marched.record(&mut encoder, &bound);
-    gpu().submit(encoder).unwrap();
-    assert!(alone.scattered.read(gpu()).unwrap() == together[0]);
-    assert!(marched.scattered.read(gpu()).unwrap() == together[1]);
-    let half = relative_rmse(&together[2], &together[1]);
-    assert!(half > 0.0 && half < 0.1, "half the resolution: {half}");
-    // Jitter that no march of this light has.
-    let form = LightForm { spot: true, ..LightForm::default() };
-    let Method::March { steps, weighting, frame, .. } = march else { unreachable!() };
-    let method = Method::March { form, steps, weighting, jitter: Jitter::Gradient, frame };
-    assert!(Views::new(gpu(), shaders(), &[ViewSettings { camera, resolution: None, method }]).is_err());
 }

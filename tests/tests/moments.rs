@@ -12,8 +12,7 @@ use airlight::scattering::{
     Filtering, Inputs, LightForm, Medium, Prefiltered, ProjectiveMap, ProjectivePrefiltered, Rectification,
     ScatteringError, Settings, SettingsError, Start, Visibility, Weighting,
 };
-use airlight::validate::{Definitions, Library};
-use airlight::{Buffer, Pass, Shaders, Stage, Texture, scenes};
+use airlight::{Buffer, Pass, Stage, Texture, scenes};
 use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;
 use glam::Vec3;
@@ -218,43 +217,11 @@ fn texels_hold_the_moments() {
 
 /// Runs `body` for each record, with the map bound as `map`; `input` and `output` as in a probe.
 fn read(map: &Texture, body: &str, inputs: usize, outputs: usize, values: &[f32]) -> Vec<f32> {
-    let records = values.len() / inputs;
-    let text = format!(
-        "#import airlight::scattering::visibility_moments::{{
-             unpack_moments, moments_visibility, moments_visibility_nearest
-         }}
-         @group(#{{GROUP}}) @binding(0) var<storage, read> inputs: array<f32>;
-         @group(#{{GROUP}}) @binding(1) var<storage, read_write> outputs: array<f32>;
-         @group(#{{GROUP}}) @binding(2) var map: texture_2d<u32>;
-         var<private> record: u32;
-         fn input(index: u32) -> f32 {{ return inputs[record * {inputs}u + index]; }}
-         fn output(index: u32, value: f32) {{ outputs[record * {outputs}u + index] = value; }}
-         @compute @workgroup_size(64)
-         fn probe(@builtin(global_invocation_id) id: vec3<u32>) {{
-             if id.x >= {records}u {{ return; }}
-             record = id.x;
-             {body}
-         }}"
-    );
-    let folder = gpu::copy_of_wgsl();
-    std::fs::write(folder.path().join("core/passes/probe.wgsl"), text).unwrap();
-    let shaders = Shaders::from_library(Library::from_directory(folder.path()).unwrap());
-    let pass = match Pass::compute_with(gpu(), &shaders, "core/probe", &Definitions::new()) {
-        Ok(pass) => pass,
-        Err(error) => panic!("the probe does not compose: {error}"),
-    };
-    let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-    let from = Buffer::with_bytes(gpu(), &bytes, wgpu::BufferUsages::STORAGE);
-    let to = Buffer::storage(gpu(), (records * outputs * 4) as u64);
-    let bound = pass
-        .bind(gpu(), &[("inputs", (&from).into()), ("outputs", (&to).into()), ("map", map.into())])
-        .unwrap();
-    let mut encoder = gpu().encoder();
-    pass.dispatch(&mut encoder, &bound, [records as u32, 1, 1]);
-    gpu().submit(encoder).unwrap();
-    let mut results = to.read_floats(gpu()).unwrap();
-    results.truncate(records * outputs);
-    results
+    let head = "#import airlight::scattering::visibility_moments::{
+                    unpack_moments, moments_visibility, moments_visibility_nearest
+                }
+                @group(#{GROUP}) @binding(2) var map: texture_2d<u32>;";
+    Probe { head, body, inputs, outputs }.run_with(values, &[("map", map)])
 }
 
 /// All moments of a map, six a texel.
@@ -432,35 +399,14 @@ fn errors_on_scenes_are_those_of_the_book() {
         let mut encoder = gpu().encoder();
         map.record(&mut encoder, &bound);
         gpu().submit(encoder).unwrap();
-        let camera = gpu::reference_camera(&view, PICTURE);
-        let rectification = gpu::read_back(&camera, stage.light.direction, stage.medium.distance_limit, &map);
         let rectified = map.rectified.read(gpu()).unwrap();
-        let depth = stage.pictures.depth.read(gpu()).unwrap();
-        let [width, height] = PICTURE.map(|side| side as usize);
-        let scene = reference::Scene {
-            camera: &camera,
-            light: gpu::reference_light(&stage.light),
-            medium: gpu::reference_medium(&stage.medium),
-            depth: &depth,
-            width,
-            height,
-        };
+        let extinction = f64::from(stage.medium.extinction);
         // The row next to each pixel, where its ray ends in it, and what is visible of it.
-        let rays: Vec<(usize, reference::RowEnd, reference::Visibility)> =
-            airlight_tests::parallel::rows(height, |y| {
-                (0..width)
-                    .map(|x| {
-                        let (direction, distance) = scene.view_ray(x, y);
-                        let (first, second, share) =
-                            rectification.rows(rectification.frame.polar_direction(direction).phi);
-                        let j = if share >= 0.5 { second } else { first };
-                        let end = rectification.row_end(j, direction, distance, scene.medium.extinction);
-                        let row = &rectified[j * 1024..(j + 1) * 1024];
-                        (j, end, reference::row_visibility(row, end))
-                    })
-                    .collect::<Vec<_>>()
-            })
-            .concat();
+        let rays = gpu::of_pixels(&stage, &view, &map, |rectification, ray| {
+            let j = ray.nearest();
+            let end = ray.end(rectification, j, extinction);
+            (j, end, reference::row_visibility(&rectified[j * 1024..(j + 1) * 1024], end))
+        });
         let values: Vec<f32> = rays
             .iter()
             .flat_map(|(j, end, _)| [(end.s - 0.5).max(0.5) as f32, *j as f32, end.z as f32])

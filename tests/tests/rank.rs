@@ -330,49 +330,36 @@ fn pictures_mix_the_rows_about_a_ray_around_the_seam_too() {
         method.record(&mut encoder, &bound);
         gpu().submit(encoder).unwrap();
         let map = &method.rectification;
-        let camera = gpu::reference_camera(&scene.view, PICTURE);
-        let rectification = gpu::read_back(&camera, stage.light.direction, stage.medium.distance_limit, map);
-        assert!(rectification.full_circle);
         let rectified = map.rectified.read(gpu()).unwrap();
         let rows: Vec<SteppedRow> =
             rectified.chunks_exact(MAP[0] as usize).map(|row| SteppedRow::new(row, 12)).collect();
-        let depth = stage.pictures.depth.read(gpu()).unwrap();
-        let [width, height] = PICTURE.map(|side| side as usize);
-        let scene = reference::Scene {
-            camera: &camera,
-            light: gpu::reference_light(&stage.light),
-            medium: gpu::reference_medium(&stage.medium),
-            depth: &depth,
-            width,
-            height,
-        };
+        let expected = gpu::of_pixels(&stage, &scene.view, map, |rectification, ray| {
+            assert!(rectification.full_circle);
+            // The depth of a ray is that in the nearest slice, in both rows.
+            let end = ray.end(rectification, ray.nearest(), 0.0);
+            let at = |j: usize| rows[j].visibility(end.s, end.z, 0.0).average;
+            let visibility = match filtering {
+                Filtering::Nearest => at(ray.nearest()),
+                Filtering::Linear => at(ray.rows[0]) * (1.0 - ray.share) + at(ray.rows[1]) * ray.share,
+            };
+            (visibility, ray.rows[1] == 0)
+        });
         let found = method.scattered.read(gpu()).unwrap();
         let (mut mean, mut off, mut seam) = (0.0, 0, 0);
-        for (i, texel) in found.chunks_exact(4).enumerate() {
-            let (direction, distance) = scene.view_ray(i % width, i / width);
-            let (first, second, share) =
-                rectification.rows(rectification.frame.polar_direction(direction).phi);
-            let nearest = if share >= 0.5 { second } else { first };
-            // The depth of a ray is that in the nearest slice, in both rows.
-            let end = rectification.row_end(nearest, direction, distance, 0.0);
-            let at = |j: usize| rows[j].visibility(end.s, end.z, 0.0).average;
-            let expected = match filtering {
-                Filtering::Nearest => at(nearest),
-                Filtering::Linear => at(first) * (1.0 - share) + at(second) * share,
-            };
-            let error = (f64::from(texel[3]) - expected).abs();
-            mean += error / (width * height) as f64;
+        for (texel, (visibility, at_seam)) in found.chunks_exact(4).zip(&expected) {
+            let error = (f64::from(texel[3]) - visibility).abs();
+            mean += error / expected.len() as f64;
             off += usize::from(error > 2e-3);
-            seam += usize::from(second == 0);
+            seam += usize::from(*at_seam);
         }
-        let share = off as f64 / (width * height) as f64;
+        let share = off as f64 / expected.len() as f64;
         println!(
             "{filtering:?}: mean {mean:.1e}, {:.2} % off by more than 2e-3, {seam} at the seam",
             100.0 * share
         );
         // Half floats hold 0..1 to 4.9e-4, for this adapter rounds towards zero; more where depths tie but for rounding.
         assert!(mean < 4.9e-4 && share < 0.001, "{filtering:?}: {mean}, {share}");
-        assert!(seam > width * height / 100);
+        assert!(seam > expected.len() / 100);
     }
 }
 
@@ -397,40 +384,22 @@ impl Case {
         let mut encoder = gpu().encoder();
         map.record(&mut encoder, &bound);
         gpu().submit(encoder).unwrap();
-        let camera = gpu::reference_camera(&view, Self::PICTURE);
-        let rectification = gpu::read_back(&camera, stage.light.direction, stage.medium.distance_limit, &map);
         let rectified = map.rectified.read(gpu()).unwrap();
-        let depth = stage.pictures.depth.read(gpu()).unwrap();
-        let [width, height] = Self::PICTURE.map(|side| side as usize);
-        let scene = reference::Scene {
-            camera: &camera,
-            light: gpu::reference_light(&stage.light),
-            medium: gpu::reference_medium(&stage.medium),
-            depth: &depth,
-            width,
-            height,
-        };
-        let pixel = |x: usize, y: usize| -> [[f64; 3]; 2] {
-            let (direction, distance) = scene.view_ray(x, y);
-            let (first, second, share) =
-                rectification.rows(rectification.frame.polar_direction(direction).phi);
+        let extinction = f64::from(stage.medium.extinction);
+        let pixels = gpu::of_pixels(&stage, &view, &map, |rectification, ray| -> [[f64; 3]; 2] {
             let at = |j: usize| -> [f64; 3] {
                 let row = &rectified[j * rectification.width..(j + 1) * rectification.width];
-                let extinction = scene.medium.extinction;
-                let end = rectification.row_end(j, direction, distance, extinction);
+                let end = ray.end(rectification, j, extinction);
                 let own = reference::row_visibility(row, end);
                 let slice = &rectification.slices[j];
                 let optical = extinction * slice.texel(rectification.width) / slice.k();
                 let common = reference::row_visibility(row, reference::RowEnd { optical, ..end });
                 [own.average, own.weighted, common.weighted]
             };
-            let (a, b) = (at(first), at(second));
-            let mixed = std::array::from_fn(|i| a[i] * (1.0 - share) + b[i] * share);
-            [if share >= 0.5 { b } else { a }, mixed]
-        };
-        let pixels =
-            airlight_tests::parallel::rows(height, |y| (0..width).map(|x| pixel(x, y)).collect::<Vec<_>>())
-                .concat();
+            let [a, b] = ray.rows.map(at);
+            let mixed = std::array::from_fn(|i| a[i] * (1.0 - ray.share) + b[i] * ray.share);
+            [if ray.share >= 0.5 { b } else { a }, mixed]
+        });
         let exact = std::array::from_fn(|rows| {
             std::array::from_fn(|mean| pixels.iter().map(|pixel| pixel[rows][mean]).collect())
         });

@@ -292,36 +292,13 @@ fn rectified_maps_are_those_of_the_reference() {
 
 /// Exact visibility over the row that is nearest to each pixel's azimuth.
 fn nearest_row(case: &Case) -> (Vec<f64>, Vec<f64>) {
-    let [width, height] = PICTURE.map(|side| side as usize);
-    let camera = gpu::reference_camera(&case.view, PICTURE);
-    let limit = case.stage.medium.distance_limit;
-    let rectification = gpu::read_back(&camera, case.stage.light.direction, limit, &case.map);
-    let depth = case.stage.pictures.depth.read(gpu()).unwrap();
     let map = case.map.rectified.read(gpu()).unwrap();
-    let scene = reference::Scene {
-        camera: &camera,
-        light: gpu::reference_light(&case.stage.light),
-        medium: gpu::reference_medium(&case.stage.medium),
-        depth: &depth,
-        width,
-        height,
-    };
-    let pixels = airlight_tests::parallel::rows(height, |y| {
-        (0..width)
-            .map(|x| {
-                let (direction, distance) = scene.view_ray(x, y);
-                let (first, second, share) =
-                    rectification.rows(rectification.frame.polar_direction(direction).phi);
-                let j = if share >= 0.5 { second } else { first };
-                let row = &map[j * rectification.width..(j + 1) * rectification.width];
-                reference::row_visibility(
-                    row,
-                    rectification.row_end(j, direction, distance, scene.medium.extinction),
-                )
-            })
-            .collect::<Vec<_>>()
-    })
-    .concat();
+    let extinction = f64::from(case.stage.medium.extinction);
+    let pixels = gpu::of_pixels(&case.stage, &case.view, &case.map, |rectification, ray| {
+        let j = ray.nearest();
+        let row = &map[j * rectification.width..(j + 1) * rectification.width];
+        reference::row_visibility(row, ray.end(rectification, j, extinction))
+    });
     (pixels.iter().map(|p| p.average).collect(), pixels.iter().map(|p| p.weighted).collect())
 }
 

@@ -85,6 +85,11 @@ pub struct Probe<'a> {
 impl Probe<'_> {
     /// The results, one after the other.
     pub fn run(&self, values: &[f32]) -> Vec<f32> {
+        self.run_with(values, &[])
+    }
+
+    /// Like `run` with textures besides, which `head` declares.
+    pub fn run_with(&self, values: &[f32], textures: &[(&str, &Texture)]) -> Vec<f32> {
         assert!(values.len().is_multiple_of(self.inputs) && !values.is_empty());
         let records = values.len() / self.inputs;
         let folder = copy_of_wgsl();
@@ -115,7 +120,9 @@ impl Probe<'_> {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let from = Buffer::with_bytes(gpu(), &bytes, wgpu::BufferUsages::STORAGE);
         let to = Buffer::storage(gpu(), (records * self.outputs * 4) as u64);
-        let bound = pass.bind(gpu(), &[("inputs", (&from).into()), ("outputs", (&to).into())]).unwrap();
+        let mut resources = vec![("inputs", (&from).into()), ("outputs", (&to).into())];
+        resources.extend(textures.iter().map(|(name, texture)| (*name, (*texture).into())));
+        let bound = pass.bind(gpu(), &resources).unwrap();
         let mut encoder = gpu().encoder();
         pass.dispatch(&mut encoder, &bound, [records as u32, 1, 1]);
         gpu().submit(encoder).unwrap();
@@ -321,6 +328,58 @@ pub fn exact_picture(
         height: height as usize,
     };
     reference::picture(&scene, &rectification, &map.rectified.read(gpu()).unwrap(), stride)
+}
+
+/// The view ray of a pixel.
+pub struct PixelRay {
+    /// Unit vector.
+    pub direction: linear::Vec3,
+    /// Metres to the surface or the limit.
+    pub distance: f64,
+    /// The rows on both sides of it.
+    pub rows: [usize; 2],
+    /// Share of the second of them.
+    pub share: f64,
+}
+
+impl PixelRay {
+    /// The row next to it.
+    pub fn nearest(&self) -> usize {
+        self.rows[usize::from(self.share >= 0.5)]
+    }
+
+    /// Where it ends in row `j`. `extinction`: 1/m.
+    pub fn end(&self, map: &reference::Rectification, j: usize, extinction: f64) -> reference::RowEnd {
+        map.row_end(j, self.direction, self.distance, extinction)
+    }
+}
+
+/// What `of` says of every pixel's ray and of the rectification that the GPU made, row after row.
+pub fn of_pixels<T: Send>(
+    stage: &Stage,
+    view: &PerspectiveView,
+    map: &Rectification,
+    of: impl Fn(&reference::Rectification, &PixelRay) -> T + Sync,
+) -> Vec<T> {
+    let [width, height, _] = stage.pictures.depth.size();
+    let camera = reference_camera(view, [width, height]);
+    let rectification = read_back(&camera, stage.light.direction, stage.medium.distance_limit, map);
+    let depth = stage.pictures.depth.read(gpu()).unwrap();
+    let scene = reference::Scene {
+        camera: &camera,
+        light: reference_light(&stage.light),
+        medium: reference_medium(&stage.medium),
+        depth: &depth,
+        width: width as usize,
+        height: height as usize,
+    };
+    let pixel = |x: usize, y: usize| {
+        let (direction, distance) = scene.view_ray(x, y);
+        let (first, second, share) = rectification.rows(rectification.frame.polar_direction(direction).phi);
+        of(&rectification, &PixelRay { direction, distance, rows: [first, second], share })
+    };
+    let row = |y: usize| (0..width as usize).map(|x| pixel(x, y)).collect::<Vec<_>>();
+    airlight_tests::parallel::rows(height as usize, row).into_iter().flatten().collect()
 }
 
 /// A storage texture of one layer with values.

@@ -115,13 +115,7 @@ impl Scene {
     fn plan(&self, options: &Options) -> Result<(LightForm, Vec<Camera>, Plan), CommandError> {
         let Framing { cameras, light, medium, .. } = &self.framing;
         let light = light.fitted(&self.bounds).map_err(StageError::Light)?;
-        let point = light.kind == crate::core::POINT;
-        let form = LightForm {
-            spot: light.kind == crate::core::SPOT,
-            point,
-            shadow_array: point || options.cascades.is_some(),
-            texture: self.light_texture.is_some(),
-        };
+        let form = options.form();
         let evaluated = |camera: &Camera| match options.resolution.resolution() {
             Some(resolution) => camera.reduced(resolution.factor()),
             None => *camera,
