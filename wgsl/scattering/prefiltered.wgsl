@@ -61,8 +61,10 @@ struct Prefix {
     first: f32,
     /// Where the stretch ends, texels from the start of the row, fractional.
     texels: f32,
-    /// Optical depth of a texel by which what was stored is weighted; 0 for plain means.
+    /// Optical depth of a texel of the ray; 0 for plain means.
     optical_step: f32,
+    /// By which what was stored is weighted: that of the reference ray, with RANK the least of the row.
+    stored_step: f32,
 }
 
 /// Columns and rows of the rectified map.
@@ -92,7 +94,8 @@ fn row_visibility(at: Prefix, row: u32, depth: f32) -> f32 {
     return rank_visibility(rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth);
 #else
     return rank_visibility_weighted(
-        rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth, at.optical_step
+        rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth, at.optical_step,
+        at.stored_step
     );
 #endif
 }

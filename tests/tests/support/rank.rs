@@ -20,8 +20,10 @@ pub struct Query {
     pub texels: f32,
     /// Depth of the ray.
     pub depth: f32,
-    /// Optical depth of a texel; 0 where the structure holds counts.
+    /// Optical depth of a texel of the ray; 0 where the structure holds counts.
     pub optical_step: f32,
+    /// The lesser of those that the structure was built for.
+    pub least_step: f32,
 }
 
 /// A structure over a map whose rows the test writes.
@@ -50,7 +52,7 @@ impl Structure {
         let inputs = Inputs {
             camera: &Buffer::uniform(gpu(), &gpu::host_camera(&camera, [1, 1])),
             light: &Buffer::uniform(gpu(), &gpu::host_light(up, matrix, 1.0, Vec3::ONE)),
-            // With this extinction the radius of a slice over its reference is its optical depth.
+            // With this extinction the radius of a slice is its optical depth.
             medium: &Buffer::uniform(gpu(), &Medium::new(1.0, Vec3::ONE, 0.0, 1.0).unwrap()),
             depth: &depth,
             shadow_map: &depth,
@@ -70,11 +72,12 @@ impl Structure {
         gpu().submit(encoder).unwrap();
     }
 
-    /// Builds it over the rows with texels of an optical depth on a reference ray, and returns what f32 makes of that.
+    /// Builds it over the rows with texels of an optical depth on the fastest ray, and returns what f32 makes of that.
     pub fn build_weighted(&self, rows: &[Vec<f32>], optical_step: f32) -> f32 {
         let width = rows[0].len() as f32;
         let radius = optical_step * width;
-        let slices: Vec<f32> = rows.iter().flat_map(|_| [0.1, 1.2, 0.5 * radius, 0.5]).collect();
+        // With a ray at right angles to the light. The last number is of the reference ray, which does not count.
+        let slices: Vec<f32> = rows.iter().flat_map(|_| [0.1, 1.8, radius, 0.5]).collect();
         self.method.rectification.slices.write(gpu(), &slices).unwrap();
         self.build(rows);
         radius / width
@@ -85,7 +88,10 @@ impl Structure {
         let columns = self.method.rectification.rectified.size()[0] as f32;
         let values: Vec<f32> = queries
             .iter()
-            .flat_map(|q| [self.bits as f32, columns, q.row as f32, q.texels, q.depth, q.optical_step])
+            .flat_map(|q| {
+                let steps = [q.optical_step, q.least_step];
+                [self.bits as f32, columns, q.row as f32, q.texels, q.depth, steps[0], steps[1]]
+            })
             .collect();
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let from = Buffer::with_bytes(gpu(), &bytes, wgpu::BufferUsages::STORAGE);
@@ -108,8 +114,11 @@ impl Structure {
 fn query_pass(weighted: bool) -> &'static Pass {
     static PASSES: [OnceLock<Pass>; 2] = [const { OnceLock::new() }; 2];
     PASSES[usize::from(weighted)].get_or_init(|| {
-        let (function, more) =
-            if weighted { ("rank_visibility_weighted", ", input(5u)") } else { ("rank_visibility", "") };
+        let (function, more) = if weighted {
+            ("rank_visibility_weighted", ", input(5u), input(6u)")
+        } else {
+            ("rank_visibility", "")
+        };
         let text = format!(
             "#import airlight::scattering::visibility_rank::{function}
             @group(#{{GROUP}}) @binding(0) var<storage, read> inputs: array<f32>;
@@ -118,10 +127,10 @@ fn query_pass(weighted: bool) -> &'static Pass {
             @group(#{{GROUP}}) @binding(3) var rank_starts: texture_2d<u32>;
             @group(#{{GROUP}}) @binding(4) var rank_planes: texture_2d_array<u32>;
             var<private> record: u32;
-            fn input(index: u32) -> f32 {{ return inputs[record * 6u + index]; }}
+            fn input(index: u32) -> f32 {{ return inputs[record * 7u + index]; }}
             @compute @workgroup_size(64)
             fn probe(@builtin(global_invocation_id) id: vec3<u32>) {{
-                if 6u * id.x >= arrayLength(&inputs) {{ return; }}
+                if 7u * id.x >= arrayLength(&inputs) {{ return; }}
                 record = id.x;
                 outputs[id.x] = {function}(
                     rank_cells, rank_starts, rank_planes, u32(input(0u)), u32(input(1u)),

@@ -75,7 +75,7 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #ifdef DEPTH_WARP
     row_ray.depth = warped_depth(row_ray.depth);
 #endif
-    let prefix = Prefix(ray.row, frame.wraps, 0.0, texels, 0.0);
+    let prefix = Prefix(ray.row, frame.wraps, 0.0, texels, 0.0, 0.0);
 #ifdef COLORS
     var lit = prefix_colors(prefix, row_ray.depth);
 #else

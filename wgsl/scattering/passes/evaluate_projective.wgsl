@@ -46,7 +46,7 @@ const ROW_REGIONS: u32 = 1u;
 /// The mean that a region of a row holds for `column`, whose neighbours are interpolated linearly.
 fn filtered_mean(ray: RowRay, first: u32, column: f32) -> f32 {
     // A stretch is read half a texel before its end.
-    return prefix_visibility(Prefix(ray.row, 0.0, f32(first), column + 0.5, 0.0), ray.depth);
+    return prefix_visibility(Prefix(ray.row, 0.0, f32(first), column + 0.5, 0.0, 0.0), ray.depth);
 }
 
 /// Mean visibility of a view ray between its ends. `row_ray`: the same in columns; `extinction` in 1/m, 0 for plain means.
