@@ -103,7 +103,8 @@ fn methods(flags: &Options) -> Vec<Rule> {
     let exact = matches!(flags.method, MethodSpelling::Rank | MethodSpelling::Wavelet);
     let other = exact || flags.method == MethodSpelling::Moments;
     let wavelet = flags.method == MethodSpelling::Wavelet;
-    let rank = matches!(flags.visibility(&flags.form()), Visibility::Rank { .. } | Visibility::Wavelet { .. });
+    let rank =
+        matches!(flags.visibility(&flags.form()), Visibility::Rank { .. } | Visibility::Wavelet { .. });
     const BASES: &str = "it is of Fourier bases: leave it out, or take --method fourier";
     vec![
         (
