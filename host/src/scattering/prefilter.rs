@@ -22,8 +22,8 @@ pub enum Visibility {
         /// Bits of a depth.
         bits: u32,
     },
-    /// A wavelet matrix: exact as rank queries of the same 8, 10 or 12 bits, in a third of their memory and less, for
-    /// plain means ([`Weighting::Average`]) only; slower.
+    /// A wavelet matrix: exact as rank queries of the same 8, 10 or 12 bits, in about a fifth of their memory, for plain
+    /// means ([`Weighting::Average`]) only; more reads.
     Wavelet {
         /// Bits of a depth, an even number.
         bits: u32,

@@ -21,7 +21,7 @@ pub enum MethodSpelling {
     Moments,
     /// Rank queries: exact.
     Rank,
-    /// A wavelet matrix: as exact, with --average only, in less than a third of the memory and slower.
+    /// A wavelet matrix: as exact, with --average only, in about a fifth of the memory and slower.
     Wavelet,
     /// One step after the other through the standard shadow map.
     March,
