@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::scattering::visibility_wavelet
 // summary: Exact mean visibility of a view ray in the least memory: a count by a wavelet matrix of four digits a level.
-// source: none; the wavelet matrix (Claude, Navarro and Ordonez 2015) with digits of two bits: docs/src/wavelet.md.
+// source: none; a wavelet matrix (Information Systems 47, 2015) with digits of two bits: docs/src/wavelet.md explains it.
 // note: Depths are rounded to `bits` bits as in visibility_rank, an even number. A level holds the texels of a row in the
 // note: order of their earlier digits, the last of these first; equal ones stay in the order of the columns. The texels
 // note: that a ray covers and that agree with it so far are neighbours in it: from `low` to before `high`.
