@@ -69,26 +69,26 @@ fn wavelet_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
         counts[thread] = vec2<u32>((length - ones - twos - threes) | (ones << 16u), twos | (threes << 16u));
         workgroupBarrier();
 
-        var before = vec2<u32>(0u);
-        var all = vec2<u32>(0u);
-        for (var other = 0u; other < THREADS; other++) {
-            let count = counts[other];
-            all += count;
-            before += select(vec2<u32>(0u), count, other < thread);
-        }
-        let total = unpacked(all);
-        // In the next level all 0 come first, then all 1, and so on.
-        let starts = vec4<u32>(0u, total.x, total.x + total.y, total.x + total.y + total.z);
-        var places = starts + unpacked(before);
         if thread < blocks {
+            var before = vec2<u32>(0u);
+            var all = vec2<u32>(0u);
+            for (var other = 0u; other < blocks; other++) {
+                let count = counts[other];
+                all += count;
+                before += select(vec2<u32>(0u), count, other < thread);
+            }
+            let total = unpacked(all);
+            // In the next level all 0 come first, then all 1, and so on.
+            let starts = vec4<u32>(0u, total.x, total.x + total.y, total.x + total.y + total.z);
+            var places = starts + unpacked(before);
             let texel = vec4<u32>(lower, upper, wavelet_sums(places));
             textureStore(wavelet, vec2<u32>(level * blocks + thread, row), texel);
-        }
-        for (var i = 0u; i < length; i++) {
-            let value = (kept[i / 2u] >> (16u * (i & 1u))) & 0xffffu;
-            let digit = (value >> shift) & 3u;
-            values[slot(min(places[digit], COLUMNS - 1u))] = value;
-            places += select(vec4<u32>(0u), vec4<u32>(1u), vec4<u32>(digit) == vec4<u32>(0u, 1u, 2u, 3u));
+            for (var i = 0u; i < length; i++) {
+                let value = (kept[i / 2u] >> (16u * (i & 1u))) & 0xffffu;
+                let digit = (value >> shift) & 3u;
+                values[slot(min(places[digit], COLUMNS - 1u))] = value;
+                places += select(vec4<u32>(0u), vec4<u32>(1u), vec4<u32>(digit) == vec4<u32>(0u, 1u, 2u, 3u));
+            }
         }
     }
 }
