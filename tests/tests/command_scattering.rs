@@ -122,6 +122,7 @@ fn rows_of_a_directional_light_agree_with_the_march() {
     let at = at.path();
     agrees(at, SUN, "", "epipolar (moments and rank", 0.015);
     agrees(at, SUN, "--method rank --bits 8", "epipolar (moments and rank", 0.02);
+    agrees(at, &format!("{SUN} --average"), "--method wavelet", "epipolar (moments and rank", 0.015);
     agrees(at, SUN, "--method moments", "epipolar (moments and rank", 0.03);
     agrees(at, SUN, "--method fourier", "projective (", 0.03);
     agrees(at, SUN, "--rectification projective --splits 4", "projective (as asked for)", 0.03);
@@ -331,6 +332,7 @@ fn flags_of_the_filter_reach_it() {
         ("fourier", " --bases 16", "bases"),
         ("rank", " --bits 10", "rank_starts"),
         ("rank", " --average", "rank_cells"),
+        ("wavelet --average", " --bits 10", "wavelet"),
         ("moments", " --average", "moments"),
     ] {
         let method = format!(" --method {method}");
@@ -387,6 +389,7 @@ fn awkward_sizes_draw() {
         "--size 1x1 --map 1x1 --shadow-map 1x1 --method rank",
         "--size 5x3 --map 33x2 --shadow-map 1x1 --method rank --bits 8 --resolution quarter --start near-plane",
         "--size 3x2 --map 1x2 --shadow-map 1x2 --method moments --start near-plane",
+        "--size 3x5 --map 65x2 --shadow-map 1x1 --method wavelet --average --bits 10 --start near-plane",
         // Wider than rank queries take: bases.
         "--size 3x2 --map 2049x2 --shadow-map 2x2",
     ] {

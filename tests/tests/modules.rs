@@ -289,7 +289,7 @@ fn a_composer_is_filled_in_five_lines() {
     for pass in PASSES {
         let definitions = [("GROUP", 1), ("BASES", 32), ("BASES_PER_THREAD", 8)];
         // Rank queries take the place of bases: only the pass that makes their structure is told.
-        let rank = (pass.name == "scattering/rank").then_some(("RANK", 12));
+        let rank = ["scattering/rank", "scattering/wavelet"].contains(&pass.name).then_some(("RANK", 12));
         let shader_defs: HashMap<_, _> = definitions
             .into_iter()
             .chain(rank)

@@ -21,11 +21,9 @@ use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;
 use gpu::{Probe, Random, gpu, shaders};
 use probing::hold;
-use rank::{KINDS, Query, Structure, clear_of_borders, row_of_kind};
+use rank::{KINDS, Query, Structure, clear_of_borders, queries, row_of_kind};
 use reference::SteppedRow;
 
-/// What f32 makes of a mean of up to 2048 texels: of a division, and of a subtraction from 1.
-const ROUNDING: f64 = 3e-7;
 /// What it makes of weighted means: a ratio of two weights, each stated to be good to 1e-6, and a few exponentials.
 const WEIGHTED_ROUNDING: f64 = 3e-6;
 
@@ -89,103 +87,10 @@ fn depths_are_rounded_to_steps() {
     assert!(undecided * 50 < records.len());
 }
 
-/// Stretches of all kinds, texels.
-fn stretch(random: &mut Random, width: u32) -> f32 {
-    let wide = f64::from(width);
-    match random.below(10) {
-        0 => [0.0, 1e-4, 9.9e-4, 1.1e-3, 0.5][random.below(5)],
-        1 => width as f32,
-        2 => [wide + 0.5, 2.0 * wide, 1e9][random.below(3)] as f32,
-        3 => (32 * random.below(width.div_ceil(32) as usize + 1)) as f32,
-        4 => (32.0 * random.below(width.div_ceil(32) as usize + 1) as f64 + random.between(-1.0, 1.0))
-            .max(0.0) as f32,
-        5 | 6 => (1 + random.below(width as usize)) as f32,
-        _ => random.between(0.0, wide) as f32,
-    }
-}
-
-/// Depths of rays: the ends, values that are stored, whole steps, and others.
-fn ray_depth(random: &mut Random, row: &[f32], bits: u32) -> f32 {
-    let steps = (1_usize << bits) - 1;
-    match random.below(8) {
-        0 => [0.0, 1.0, -0.5, 1.5][random.below(4)],
-        1 => random.below(steps + 1) as f32 / steps as f32,
-        2..=5 => {
-            let stored = row[random.below(row.len())];
-            if stored.is_finite() { stored } else { 1.0 }
-        }
-        _ => loop {
-            let depth = random.unit() as f32;
-            if clear_of_borders(depth, bits) {
-                return depth;
-            }
-        },
-    }
-}
-
-fn queries(random: &mut Random, rows: &[Vec<f32>], bits: u32, count: usize) -> Vec<Query> {
-    (0..count)
-        .map(|_| {
-            let row = random.below(rows.len());
-            Query {
-                row: row as u32,
-                texels: stretch(random, rows[row].len() as u32),
-                depth: ray_depth(random, &rows[row], bits),
-                optical_step: 0.0,
-                least_step: 0.0,
-            }
-        })
-        .collect()
-}
-
 #[test]
 fn counts_are_exactly_those_of_the_stepped_map() {
     let _turn = gpu::turn();
-    const QUERIES: usize = 2000;
-    let mut random = Random(502);
-    let (mut asked, mut partly, mut worst, mut ties) = (0_usize, 0_usize, 0.0_f64, 0_usize);
-    for bits in [8, 10, 12] {
-        for width in [1, 2, 31, 32, 33, 100, 1000, 1024, 2048] {
-            for height in [1, 7_usize] {
-                let structure = Structure::new(bits, [width, height as u32], Weighting::Average);
-                // Maps of few rows take turns, so that every kind of row comes at every size.
-                for first in (0..KINDS).step_by(height) {
-                    let rows: Vec<Vec<f32>> = (first..first + height)
-                        .map(|kind| row_of_kind(&mut random, kind % KINDS, width as usize, bits))
-                        .collect();
-                    structure.build(&rows);
-                    let queries = queries(&mut random, &rows, bits, QUERIES / (KINDS / height).max(1));
-                    let stepped: Vec<SteppedRow> =
-                        rows.iter().map(|row| SteppedRow::new(row, bits)).collect();
-                    for (query, found) in queries.iter().zip(structure.ask(&queries)) {
-                        let row = &stepped[query.row as usize];
-                        let depth = f64::from(query.depth);
-                        let (lit, covered) = row.lit_texels(f64::from(query.texels), depth);
-                        let off = (f64::from(found) - lit / covered).abs();
-                        worst = if off <= worst { worst } else { off };
-                        let what = || format!("{bits} bits, {width}x{height}, kinds from {first}, {query:?}");
-                        assert!((0.0..=1.0).contains(&found), "{found}: {}", what());
-                        assert!(off <= ROUNDING, "{} of {lit} lit: {}", f64::from(found) * covered, what());
-                        if covered.fract() == 0.0 {
-                            let count = (f64::from(found) * covered).round();
-                            assert_eq!(count, lit, "of {covered}: {}", what());
-                        }
-                        asked += 1;
-                        partly += usize::from(0.0 < lit && lit < covered);
-                        let ray = reference::depth_step(depth, bits);
-                        let stored = &rows[query.row as usize];
-                        let equal = stored.iter().any(|v| reference::depth_step(f64::from(*v), bits) == ray);
-                        ties += usize::from(equal);
-                    }
-                }
-            }
-        }
-    }
-    println!(
-        "{asked} counts, {partly} neither none nor all, {ties} with equal steps in the row: no mismatch"
-    );
-    assert!(partly > asked / 5 && ties > asked / 3, "the cases are not varied enough");
-    hold("visibility from counts", worst, ROUNDING);
+    rank::hold_counts(502, |bits| Visibility::Rank { bits });
 }
 
 /// Rows that make the structure err most: in sorted order texels of the row's begin and its end take turns by halves of

@@ -5,15 +5,17 @@
 // note: Unlike algorithm modules a callback holds bindings, those that passes share. All methods answer the same question:
 // note: which share of the first texels of a row is lit at the depth of a ray.
 // definition RANK: rank queries, bits of a depth as in the pass `rank`; Fourier bases without RANK and MOMENTS.
+// definition WAVELET: by a wavelet matrix, as of the pass `wavelet`; with RANK, an even number, and AVERAGE.
 // definition MOMENTS: six moments.
 // definition AVERAGE: what was stored holds plain means.
 // definition BASES: number M of Fourier bases, as in the filter.
 // definition COLORS: colours of the light, as in the filter; Fourier bases only.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition NEAREST: the nearest row, and the nearest texel of what was stored, instead of a bilinear blend; no sampler.
-// binding rank_cells: what `rank` makes, rg32uint; with RANK only.
-// binding rank_starts: the same, r32uint; with RANK only.
-// binding rank_planes: the same, rgba32uint; with RANK only.
+// binding wavelet: what `wavelet` makes, rgba32uint; with WAVELET only.
+// binding rank_cells: what `rank` makes, rg32uint; with RANK only, without WAVELET; so the next two.
+// binding rank_starts: the same, r32uint.
+// binding rank_planes: the same, rgba32uint.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
 // binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
 // binding bases: what `filter` makes, rgba8unorm or rgba16float; without RANK and MOMENTS.
@@ -25,11 +27,16 @@
 }
 #import airlight::scattering::visibility_moments::{moments_visibility, moments_visibility_nearest}
 #import airlight::scattering::visibility_rank::{rank_visibility, rank_visibility_weighted}
+#import airlight::scattering::visibility_wavelet::wavelet_visibility
 
 #ifdef RANK
+#ifdef WAVELET
+@group(#{GROUP}) @binding(7) var wavelet: texture_2d<u32>;
+#else
 @group(#{GROUP}) @binding(7) var rank_cells: texture_2d<u32>;
 @group(#{GROUP}) @binding(8) var rank_starts: texture_2d<u32>;
 @group(#{GROUP}) @binding(13) var rank_planes: texture_2d_array<u32>;
+#endif
 @group(#{GROUP}) @binding(14) var rectified: texture_2d<f32>;
 const RANK_BITS: u32 = u32(#{RANK});
 #else ifdef MOMENTS
@@ -90,7 +97,9 @@ fn prefix_row(at: Prefix) -> u32 {
 /// Mean visibility of the stretch in a whole `row`, 0..1.
 fn row_visibility(at: Prefix, row: u32, depth: f32) -> f32 {
     let columns = map_size().x;
-#ifdef AVERAGE
+#ifdef WAVELET
+    return wavelet_visibility(wavelet, RANK_BITS, columns, row, at.texels, depth);
+#else ifdef AVERAGE
     return rank_visibility(rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth);
 #else
     return rank_visibility_weighted(

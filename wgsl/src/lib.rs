@@ -104,6 +104,7 @@ modules! {
     scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
     scattering::visibility_fourier ["core::fourier_basis"],
     scattering::visibility_rank ["core::prefix_sum"],
+    scattering::visibility_wavelet ["scattering::visibility_rank"],
     scattering::visibility_moments ["core::fourier_basis"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
     scattering::upsample [],
@@ -113,7 +114,7 @@ modules! {
     ],
     scattering::prefiltered [
         "scattering::rows", "scattering::visibility_fourier", "scattering::visibility_moments",
-        "scattering::visibility_rank"
+        "scattering::visibility_rank", "scattering::visibility_wavelet"
     ],
 }
 
@@ -129,6 +130,7 @@ passes! {
     scattering/filter,
     scattering/filter_moments,
     scattering/rank,
+    scattering/wavelet,
     scattering/evaluate,
     scattering/evaluate_projective,
     scattering/evaluate_local,

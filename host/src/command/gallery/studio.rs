@@ -163,6 +163,7 @@ fn rows(kind: &str, settings: Settings, bases: &Texture) -> String {
         Visibility::Fourier => format!("{} bases in {layers} layers", settings.bases),
         Visibility::Moments => "6 moments".to_owned(),
         Visibility::Rank { bits } => format!("rank queries of {bits} bits"),
+        Visibility::Wavelet { bits } => format!("a wavelet matrix of {bits} bits"),
     };
     format!("{kind}, {columns}x{rows}, {stored}")
 }
