@@ -100,29 +100,27 @@ fn march(flags: &Options) -> Vec<Rule> {
 }
 
 fn methods(flags: &Options) -> Vec<Rule> {
-    let other = matches!(flags.method, MethodSpelling::Moments | MethodSpelling::Rank);
-    let rank = matches!(flags.visibility(&flags.form()), Visibility::Rank { .. });
+    let moments = flags.method == MethodSpelling::Moments;
+    let other = moments || flags.method == MethodSpelling::Rank;
+    let rank = matches!(flags.visibility(), Visibility::Rank { .. });
     const BASES: &str = "it is of Fourier bases: leave it out, or take --method fourier";
+    const EPIPOLAR: &str = "moments are of epipolar rows: leave it out, or take --method rank or fourier";
     vec![
         (
-            other && (flags.local() || flags.light_texture.is_some()),
+            moments && (flags.local() || flags.light_texture.is_some()),
             "--method",
-            "`moments` and `rank` are for directional lights without --light-texture: take auto",
+            "`moments` are for directional lights without --light-texture: take auto",
         ),
         (
-            other && flags.camera == Projection::Orthographic,
+            moments && flags.camera == Projection::Orthographic,
             "--method",
-            "`moments` and `rank` need a perspective camera: take auto",
+            "`moments` need a perspective camera: take auto",
         ),
         (other && flags.bases.is_some(), "--bases", BASES),
         (other && flags.half, "--half", BASES),
         (other && flags.regions > 1, "--regions", BASES),
-        (other && flags.splits.is_some(), "--splits", BASES),
-        (
-            other && flags.rectification == RectificationSpelling::Projective,
-            "--rectification",
-            "`projective` rows are filtered by Fourier bases only: take auto, or --method fourier",
-        ),
+        (moments && flags.splits.is_some(), "--splits", EPIPOLAR),
+        (moments && flags.rectification == RectificationSpelling::Projective, "--rectification", EPIPOLAR),
         (
             flags.bits.is_some() && !rank,
             "--bits",
