@@ -27,8 +27,8 @@ const MAP: [u32; 2] = [512, 512];
 const SHADOW: [u32; 2] = [1024, 1024];
 /// One pixel in so many, in both directions, is compared with the references that integrate.
 const STRIDE: usize = 3;
-/// Rank queries err by at most this part of what bases do, against the sum over the same rows.
-const RANKED: f64 = 0.7;
+/// Rank queries err by at most this part of what bases do, in plain means over the same rows.
+const RANKED: f64 = 0.5;
 
 /// A scene with a light, on the GPU.
 struct Case {
@@ -370,8 +370,10 @@ fn radiance_reaches_its_figures() {
             if error.is_nan() || error > 0.03 {
                 failures.push(format!("{}, {weights:?}: {error}", case.name));
             }
+            // Weights of the reference ray, which all rays of a row share, err more than rank queries do.
+            let part = if weighting == Weighting::Average { RANKED } else { 1.0 };
             let of_ranks = relative_rmse(&ranked, &exact);
-            if of_ranks.is_nan() || of_ranks > RANKED * error {
+            if of_ranks.is_nan() || of_ranks > part * error {
                 failures.push(format!("{}, {weights:?}: rank queries {of_ranks}, bases {error}", case.name));
             }
         }
@@ -446,19 +448,31 @@ fn a_texture_colours_a_directional_light() {
     let difference = error::relative_rmse(&other.radiance, &one.radiance);
     println!("white texture: {:.2} %", 100.0 * difference);
     assert!(difference < 0.01);
-    let exact = case.with_reference(|scene, maps| {
-        let scene_of_sun = reference::Scene {
-            camera: scene.camera,
-            light: gpu::reference_light(&case.stage.light),
-            medium: scene.medium,
-            depth: scene.depth,
-            width: scene.width,
-            height: scene.height,
-        };
-        reference::shadow_views_picture(&scene_of_sun, maps, scene.texture.as_ref(), Start::Eye, STRIDE)
-    });
-    let error = relative_rmse(&prefiltered(&case, case.settings()).1, &exact);
+    let exact = |case: &Case| {
+        case.with_reference(|scene, maps| {
+            let scene_of_sun = reference::Scene {
+                camera: scene.camera,
+                light: gpu::reference_light(&case.stage.light),
+                medium: scene.medium,
+                depth: scene.depth,
+                width: scene.width,
+                height: scene.height,
+            };
+            reference::shadow_views_picture(&scene_of_sun, maps, scene.texture.as_ref(), Start::Eye, STRIDE)
+        })
+    };
     let rank = Settings { visibility: Visibility::Rank { bits: 12 }, ..case.settings() };
+    // In thin air nothing is left of what the rays of a row share, their weights.
+    let mut thin = Case::new("sun, texture, thin air", sun(), Some(panes()), None);
+    thin.stage.medium = Medium { extinction: 1e-4, ..thin.stage.medium };
+    thin.stage.medium_buffer = Buffer::uniform(gpu(), &thin.stage.medium);
+    let in_thin_air = exact(&thin);
+    let [bases, ranks] =
+        [thin.settings(), rank].map(|settings| relative_rmse(&prefiltered(&thin, settings).1, &in_thin_air));
+    println!("sun, texture, thin air: bases {:.2} %, rank queries {:.2} %", 100.0 * bases, 100.0 * ranks);
+    assert!(ranks < 0.6 * bases, "{ranks} {bases}");
+    let exact = exact(&case);
+    let error = relative_rmse(&prefiltered(&case, case.settings()).1, &exact);
     let ranked = relative_rmse(&prefiltered(&case, rank).1, &exact);
     let march = relative_rmse(&marched(&case, 256, Weighting::Transmittance), &exact);
     println!(
@@ -468,7 +482,7 @@ fn a_texture_colours_a_directional_light() {
         100.0 * march
     );
     assert!(error < 0.05, "{error}");
-    assert!(ranked < error, "{ranked}");
+    assert!(ranked < 0.05, "{ranked}");
     assert!(march < 0.02, "{march}");
 }
 

@@ -956,7 +956,7 @@ fn a_row_lit_up_to_a_column_has_its_closed_form() {
         let row: Vec<f32> = (0..SIZE[0]).map(|column| if column < lit { 1.0 } else { 0.0 }).collect();
         let rows = stage.reference_rows(SIZE, splits);
         let edge = rows.x_of(f64::from(lit));
-        let mut worst = [0.0_f64; 3];
+        let mut worst = [0.0_f64; 4];
         for weighting in [Weighting::Average, Weighting::Transmittance] {
             let map = stage.map(SIZE, splits);
             map.rectified.write(gpu(), &row.repeat(SIZE[1] as usize)).unwrap();
@@ -985,15 +985,19 @@ fn a_row_lit_up_to_a_column_has_its_closed_form() {
                 let expected = weight(distance.min(edge / cosine)) / weight(distance);
                 worst[0] = worst[0].max((f64::from(marched.visibility[i]) - expected).abs());
                 worst[1] = worst[1].max((f64::from(found.visibility[i]) - expected).abs());
-                worst[2] = worst[2].max((f64::from(ranked.visibility[i]) - expected).abs());
+                let of_ranks = if weighting == Weighting::Average { 2 } else { 3 };
+                worst[of_ranks] = worst[of_ranks].max((f64::from(ranked.visibility[i]) - expected).abs());
             }
         }
         println!(
-            "{splits} splits, lit up to {edge:.2} m, extinction {extinction}: march {:.1e}, bases {:.1e}, rank {:.1e}",
-            worst[0], worst[1], worst[2]
+            "{splits} splits, lit up to {edge:.2} m, extinction {extinction}: march {:.1e}, bases {:.1e}, \
+             rank queries {:.1e}, weighted {:.1e}",
+            worst[0], worst[1], worst[2], worst[3]
         );
         // f16 of the picture and f32 of the sums; 8 bits and 128 bases at the ends of the depth range.
-        assert!(worst[0] < 1.5e-3 && worst[1] < 0.01 && worst[2] < 1.5e-3, "{splits}: {worst:?}");
+        assert!(worst[0] < 1.5e-3 && worst[1] < 0.01, "{splits}: {worst:?}");
+        // Rays weigh a little otherwise than the reference ray of their row.
+        assert!(worst[2] < 1.0e-3 && worst[3] < 4e-3, "{splits}: {worst:?}");
     }
 }
 
