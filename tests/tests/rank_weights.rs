@@ -260,7 +260,7 @@ fn means_err_by_no_more_than_proven_whatever_the_weights() {
                     } else {
                         0.0
                     };
-                    let beyond = total > 0.0 && !(off <= bound);
+                    let beyond = total > 0.0 && (off.is_nan() || off > bound);
                     if beyond || !inside {
                         failures.push(format!(
                             "{colors} colours, {weight_bits} bits, {width} columns, weights {}, {query:?}: {found:?} \
