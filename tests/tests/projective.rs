@@ -919,7 +919,8 @@ fn regions_and_near_planes_keep_the_figures() {
                 let (ranked, _) = stage.prefiltered(stage.map([510, 512], 3), rank);
                 let ranked = error::relative_rmse(&ranked.radiance, &exact.radiance());
                 println!("terrain {name}, rank queries: radiance {:.2} %", 100.0 * ranked);
-                assert!(ranked <= error, "{name}: {ranked}");
+                // In thick air both err by what the weights of the reference ray do.
+                assert!(ranked <= error + 5e-4, "{name}: {ranked}");
             }
             // Regions are put together by the ray's own weights: never worse.
             assert!(error <= budget && error <= before + 5e-4, "{name}, {regions} regions: {error}");
