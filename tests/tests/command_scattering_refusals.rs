@@ -70,18 +70,22 @@ fn flags_that_cannot_be_meant_are_refused() {
         bad(&format!("--method march {flag}"), &[flag.split(' ').next().unwrap(), "--method fourier"]);
     }
     for method in ["rank", "moments", "wavelet --average"] {
-        for flag in ["--bases 16", "--half", "--regions 2", "--splits 2", "--rectification projective"] {
+        for flag in ["--bases 16", "--half", "--regions 2"] {
             let parts = [flag.split(' ').next().unwrap(), "--method fourier"];
             bad(&format!("--method {method} {flag}"), &parts);
         }
-        for other in [spot, point, orthographic, "--light-texture glass.png"] {
-            bad(&format!("--method {method} {other}"), &["--method", "take auto"]);
-        }
+    }
+    for flag in ["--splits 2", "--rectification projective"] {
+        let parts = [flag.split(' ').next().unwrap(), "--method rank"];
+        bad(&format!("--method moments {flag}"), &parts);
+    }
+    for other in [spot, point, orthographic, "--light-texture glass.png"] {
+        bad(&format!("--method moments {other}"), &["--method", "take auto"]);
     }
     for bits in ["7", "13", "ten"] {
         bad(&format!("--bits {bits}"), &["--bits", bits]);
     }
-    for other in ["--method fourier", "--method march", "--half", spot] {
+    for other in ["--method fourier", "--method march", "--half"] {
         bad(&format!("--bits 10 {other}"), &["--bits", "--method rank"]);
     }
     bad("--method wavelet", &["--method", "`wavelet`", "--average", "--method rank"]);

@@ -399,17 +399,28 @@ fn what_ranks_cannot_do_is_refused() {
     let needs = |what: &str| format!("the method `rank` needs {what}; `fourier` does without");
     assert_eq!(refusal(Settings { map: [2049, 16], ..rank }), needs("maps of at most 2048 columns"));
     assert_eq!(refusal(Settings { regions: 2, ..rank }), needs("rows in one region"));
+    assert!(refusal(Settings { map: [0, 16], ..rank }).contains("0x16 is impossible"));
+    let map = ProjectiveMap::drawn(gpu(), [64, 16]).unwrap();
+    let parts = Settings { regions: 3, ..rank };
+    match ProjectivePrefiltered::new(gpu(), shaders(), map, parts, [16, 16]) {
+        Err(error) => assert_eq!(error.to_string(), needs("rows in one region")),
+        Ok(_) => panic!("regions are taken"),
+    }
+    // What ranks can do and moments cannot.
+    let moments = Settings { visibility: Visibility::Moments, ..rank };
+    let needs = |what: &str| format!("the method `moments` needs {what}; `fourier` does without");
     let spot = LightForm { spot: true, ..LightForm::default() };
     let texture = LightForm { texture: true, ..LightForm::default() };
     for light in [spot, texture] {
-        assert_eq!(refusal(Settings { light, ..rank }), needs("a plain directional light"));
+        assert_eq!(refusal(Settings { light, ..moments }), needs("a plain directional light"));
+        assert!(Prefiltered::new(gpu(), shaders(), Settings { light, ..rank }, [16, 16]).is_ok());
     }
-    assert!(refusal(Settings { map: [0, 16], ..rank }).contains("0x16 is impossible"));
-    let map = ProjectiveMap::drawn(gpu(), [64, 16]).unwrap();
-    match ProjectivePrefiltered::new(gpu(), shaders(), map, rank, [16, 16]) {
+    let map = || ProjectiveMap::drawn(gpu(), [64, 16]).unwrap();
+    match ProjectivePrefiltered::new(gpu(), shaders(), map(), moments, [16, 16]) {
         Err(error) => assert_eq!(error.to_string(), needs("epipolar rows")),
         Ok(_) => panic!("projective rows are taken"),
     }
+    assert!(ProjectivePrefiltered::new(gpu(), shaders(), map(), rank, [16, 16]).is_ok());
     // What lies at the bounds is taken.
     for (bits, map) in [(8, [2048, 1]), (12, [1, 16]), (9, [5, 5]), (11, [40, 3])] {
         let settings = Settings { visibility: Visibility::Rank { bits }, map, ..rank };

@@ -268,7 +268,8 @@ impl Settings {
 
     /// Of the pass `evaluate_projective`, which knows no epipole.
     pub(super) fn projective_definitions(&self) -> Definitions {
-        Self { epipole_march: false, depth_warp: false, ..*self }.evaluate_definitions()
+        let definitions = Self { epipole_march: false, depth_warp: false, ..*self }.evaluate_definitions();
+        self.weight_definitions(definitions, self.weight_bits(true))
     }
 
     fn with_regions(&self, definitions: Definitions) -> Definitions {

@@ -6,7 +6,8 @@
 // note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
 // note: texels, very short rays included, blended in without a seam.
 // definition BASES: number M of bases, as in the filter; without RANK and MOMENTS.
-// definition RANK: exact visibility by rank queries, bits of a depth as in `rank`. Not with COLORS or REGIONS.
+// definition RANK: exact visibility by rank queries, bits of a depth as in `rank`. Not with REGIONS.
+// definition WEIGHT_BITS: bits of a weight, as in `rank_weights`; with RANK and COLORS.
 // definition WAVELET: by the wavelet matrix of `wavelet`; with RANK and AVERAGE.
 // definition MOMENTS: visibility from what `filter_moments` stores. Not with COLORS or REGIONS.
 // definition COLORS: 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
@@ -33,9 +34,10 @@
 // binding light_sampler: linear, clamped to the edge; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
 // binding bases: filtered bases, M/4 layers, or what the filter makes with COLORS, rgba8unorm or rgba16float.
 // binding wavelet: what `wavelet` makes, rgba32uint; with WAVELET only.
-// binding rank_cells: what `rank` makes, rg32uint; with RANK only, without WAVELET; so the next two.
+// binding rank_cells: what `rank` makes, rg32uint, or with COLORS `rank_weights`, rgba32uint; with RANK only, without WAVELET; so the next two.
 // binding rank_starts: the same, r32uint.
 // binding rank_planes: the same, rgba32uint.
+// binding rank_weights: the same, rgba32uint; with RANK and WEIGHT_BITS only.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
 // binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.

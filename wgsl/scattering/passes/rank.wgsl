@@ -14,69 +14,31 @@
 // binding rank_starts: out, r32uint: how many texels of a row have a smaller value, two of 16 bits a texel, a row each.
 // binding rank_planes: out, rgba32uint: bit planes, four a layer, lowest first; one texel for 32 columns, a row each.
 
-#import airlight::core::finite::finite_or
 #import airlight::core::prefix_sum::prefix_weight
+#import airlight::scattering::rank_sort::{rectified, counts, texels, sort_row, THREADS, COLUMNS, NONE}
 #import airlight::scattering::rectify::{slice_from_texel, greatest_sine}
 #import airlight::scattering::single_scatter::Medium
-#import airlight::scattering::visibility_rank::rank_value
 
 #ifndef AVERAGE
 @group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
 @group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
 #endif
-@group(#{GROUP}) @binding(2) var rectified: texture_2d<f32>;
 @group(#{GROUP}) @binding(3) var rank_cells: texture_storage_2d<rg32uint, write>;
-@group(#{GROUP}) @binding(4) var rank_starts: texture_storage_2d<r32uint, write>;
-@group(#{GROUP}) @binding(5) var rank_planes: texture_storage_2d_array<rgba32uint, write>;
 
-const BITS: u32 = u32(#{RANK});
-const THREADS: u32 = 64u;
-/// Columns of the widest row.
-const COLUMNS: u32 = 2048u;
-/// Pairs of values.
-const PAIRS: u32 = 1u << (BITS - 1u);
-const PAIRS_PER_THREAD: u32 = PAIRS / THREADS;
-/// Cells that are made at a time.
-#ifdef AVERAGE
+/// Threads of the workgroup of a row.
+const GROUP_THREADS: u32 = 64u;
+/// Cells that are made at a time: first their masks in `counts` and, behind CELLS of them, what they weigh at the lesser
+/// step, and then at the greater one.
 const CELLS: u32 = 1024u;
+#ifdef AVERAGE
 const WORDS_PER_CELL: u32 = 1u;
 #else
-const CELLS: u32 = 640u;
 const WORDS_PER_CELL: u32 = 3u;
 /// Steps of a weight. The first weighs all of them.
 const WEIGHT_STEPS: f32 = 65535.0;
 #endif
-/// Stands for the texel beyond the last of a row.
-const NONE: u32 = 0xffffu;
 
-/// First how many texels have each value, then how many have a smaller one, two of 16 bits a word; then the masks of
-/// cells and, behind CELLS of them, what they weigh at the lesser step, and then at the greater one.
-var<workgroup> counts: array<atomic<u32>, 2048u>;
-/// Values of the texels, then their ranks, two of 16 bits a word.
-var<workgroup> texels: array<u32, COLUMNS / 2u>;
-/// Texels of each thread's values.
-var<workgroup> sums: array<u32, THREADS>;
-
-/// Value of a texel, counted; NONE beyond the row.
-fn counted_value(column: u32, row: u32, columns: u32) -> u32 {
-    if column >= columns {
-        return NONE;
-    }
-    let value = rank_value(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), BITS);
-    atomicAdd(&counts[value / 2u], 1u << (16u * (value & 1u)));
-    return value;
-}
-
-/// The next rank of a value; NONE for NONE.
-fn next_rank(value: u32) -> u32 {
-    if value == NONE {
-        return NONE;
-    }
-    let shift = 16u * (value & 1u);
-    return (atomicAdd(&counts[value / 2u], 1u << shift) >> shift) & 0xffffu;
-}
-
-@compute @workgroup_size(THREADS)
+@compute @workgroup_size(GROUP_THREADS)
 fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     let size = textureDimensions(rectified);
     let row = group.x;
@@ -86,32 +48,6 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     if row >= size.y {
         return;
     }
-    for (var word = thread; word < words; word += THREADS) {
-        let first = counted_value(2u * word, row, columns);
-        texels[word] = first | (counted_value(2u * word + 1u, row, columns) << 16u);
-    }
-    workgroupBarrier();
-
-    write_planes(thread, row, blocks);
-    var sum = 0u;
-    for (var pair = thread * PAIRS_PER_THREAD; pair < (thread + 1u) * PAIRS_PER_THREAD; pair++) {
-        let both = atomicLoad(&counts[pair]);
-        sum += (both & 0xffffu) + (both >> 16u);
-    }
-    sums[thread] = sum;
-    workgroupBarrier();
-    var start = 0u;
-    for (var before = 0u; before < THREADS; before++) {
-        start += select(0u, sums[before], before < thread);
-    }
-    for (var pair = thread * PAIRS_PER_THREAD; pair < (thread + 1u) * PAIRS_PER_THREAD; pair++) {
-        let both = atomicLoad(&counts[pair]);
-        let packed = start | ((start + (both & 0xffffu)) << 16u);
-        atomicStore(&counts[pair], packed);
-        textureStore(rank_starts, vec2<u32>(pair, row), vec4<u32>(packed, 0u, 0u, 0u));
-        start += (both & 0xffffu) + (both >> 16u);
-    }
-    workgroupBarrier();
 #ifdef AVERAGE
     let least_step = 0.0;
     let rankers = THREADS;
@@ -120,13 +56,7 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
     let least_step = max(medium.extinction * slice.radius_max / (f32(size.x) * greatest_sine(slice)), 0.0);
 #endif
-    if thread < rankers {
-        for (var word = thread; word < words; word += rankers) {
-            let values = texels[word];
-            let first = next_rank(values & 0xffffu);
-            texels[word] = first | (next_rank(values >> 16u) << 16u);
-        }
-    }
+    sort_row(thread, row, columns, rankers);
     // As many chunks at a time as there is room for.
     let strip = CELLS / blocks;
     var base = vec2<u32>(0u);
@@ -149,29 +79,6 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
         if thread < blocks {
             base = write_cells(thread, row, first, min(strip, blocks - first), blocks, base, least_step);
         }
-    }
-}
-
-/// Bit planes of the values of a block.
-fn write_planes(block: u32, row: u32, blocks: u32) {
-    if block >= blocks {
-        return;
-    }
-    var low = vec4<u32>(0u);
-    var middle = vec4<u32>(0u);
-    var high = vec4<u32>(0u);
-    // Columns beyond the row are never asked for.
-    for (var column = 0u; column < 32u; column++) {
-        let value = (texels[16u * block + column / 2u] >> (16u * (column & 1u))) & 0xffffu;
-        let bits = vec4<u32>(value) >> vec4<u32>(0u, 1u, 2u, 3u);
-        low |= (bits & vec4<u32>(1u)) << vec4<u32>(column);
-        middle |= ((bits >> vec4<u32>(4u)) & vec4<u32>(1u)) << vec4<u32>(column);
-        high |= ((bits >> vec4<u32>(8u)) & vec4<u32>(1u)) << vec4<u32>(column);
-    }
-    textureStore(rank_planes, vec2<u32>(block, row), 0u, low);
-    textureStore(rank_planes, vec2<u32>(block, row), 1u, middle);
-    if BITS > 8u {
-        textureStore(rank_planes, vec2<u32>(block, row), 2u, high);
     }
 }
 

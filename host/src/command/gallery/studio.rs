@@ -80,7 +80,7 @@ impl Studio {
         let depth_warp = light.local();
         let settings = Settings { light, epipole_march, depth_warp, ..self.settings() };
         if stage.camera.projection == 0 {
-            let visibility = Visibility::automatic(&light, settings.map[0]);
+            let visibility = Visibility::automatic(settings.map[0]);
             self.epipolar(stage, Settings { visibility, ..settings })
         } else {
             self.projective(stage, settings)

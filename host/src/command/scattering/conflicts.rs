@@ -100,32 +100,30 @@ fn march(flags: &Options) -> Vec<Rule> {
 }
 
 fn methods(flags: &Options) -> Vec<Rule> {
-    let exact = matches!(flags.method, MethodSpelling::Rank | MethodSpelling::Wavelet);
-    let other = exact || flags.method == MethodSpelling::Moments;
+    let moments = flags.method == MethodSpelling::Moments;
     let wavelet = flags.method == MethodSpelling::Wavelet;
-    let rank =
-        matches!(flags.visibility(&flags.form()), Visibility::Rank { .. } | Visibility::Wavelet { .. });
+    let exact = wavelet || flags.method == MethodSpelling::Rank;
+    let (other, plain) = (exact || moments, wavelet || moments);
+    let rank = matches!(flags.visibility(), Visibility::Rank { .. } | Visibility::Wavelet { .. });
     const BASES: &str = "it is of Fourier bases: leave it out, or take --method fourier";
+    const EPIPOLAR: &str =
+        "moments and wavelet matrices are of epipolar rows: leave it out, or take --method rank or fourier";
     vec![
         (
-            other && (flags.local() || flags.light_texture.is_some()),
+            plain && (flags.local() || flags.light_texture.is_some()),
             "--method",
-            "`moments`, `rank` and `wavelet` are for directional lights without --light-texture: take auto",
+            "`moments` and `wavelet` are for directional lights without --light-texture: take auto",
         ),
         (
-            other && flags.camera == Projection::Orthographic,
+            plain && flags.camera == Projection::Orthographic,
             "--method",
-            "`moments`, `rank` and `wavelet` need a perspective camera: take auto",
+            "`moments` and `wavelet` need a perspective camera: take auto",
         ),
         (other && flags.bases.is_some(), "--bases", BASES),
         (other && flags.half, "--half", BASES),
         (other && flags.regions > 1, "--regions", BASES),
-        (other && flags.splits.is_some(), "--splits", BASES),
-        (
-            other && flags.rectification == RectificationSpelling::Projective,
-            "--rectification",
-            "`projective` rows are filtered by Fourier bases only: take auto, or --method fourier",
-        ),
+        (plain && flags.splits.is_some(), "--splits", EPIPOLAR),
+        (plain && flags.rectification == RectificationSpelling::Projective, "--rectification", EPIPOLAR),
         (
             flags.bits.is_some() && !rank,
             "--bits",

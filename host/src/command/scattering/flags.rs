@@ -257,22 +257,20 @@ impl Options {
 
     /// True where a flag says that there are Fourier bases.
     pub fn asks_for_bases(&self) -> bool {
-        let projective = self.rectification == RectificationSpelling::Projective;
-        self.bases.is_some() || self.half || self.regions > 1 || self.splits.is_some() || projective
+        self.bases.is_some() || self.half || self.regions > 1
     }
 
     /// How visibility is prefiltered, unless it is marched.
-    pub fn visibility(&self, form: &LightForm) -> Visibility {
+    pub fn visibility(&self) -> Visibility {
         let rank = Visibility::Rank { bits: self.bits.unwrap_or(RANK_BITS) };
-        let perspective = self.camera == Projection::Perspective;
         match self.method {
             MethodSpelling::Fourier | MethodSpelling::March => Visibility::Fourier,
             MethodSpelling::Moments => Visibility::Moments,
             MethodSpelling::Rank => rank,
             MethodSpelling::Wavelet => Visibility::Wavelet { bits: self.bits.unwrap_or(RANK_BITS) },
             MethodSpelling::Auto => {
-                let best = Visibility::automatic(form, self.map[0]);
-                let fits = perspective && !self.asks_for_bases() && best != Visibility::Fourier;
+                let fits =
+                    !self.asks_for_bases() && Visibility::automatic(self.map[0]) != Visibility::Fourier;
                 if fits { rank } else { Visibility::Fourier }
             }
         }
