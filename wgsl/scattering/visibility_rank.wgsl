@@ -21,7 +21,7 @@
 // note: u0, u1 = 2 u0 those of the stored ones that errs by at most |u - u0| |u - u1| / 62. The lesser one is that of the
 // note: ray that crosses texels fastest, at right angles to the light where the row has such a ray.
 
-#import airlight::core::prefix_sum::prefix_weight
+#import airlight::core::prefix_sum::one_minus_exp
 
 /// Least stretch that is asked for, texels: shorter ones see their texel.
 const LEAST_TEXELS: f32 = 1e-3;
@@ -119,17 +119,23 @@ fn rank_visibility_weighted(
     let chunk = max(select(1.0, mix(after.x, after.y, between), next < blocks * blocks) - base, 0.0);
     let meant = f32(countOneBits(cell.x & low_bits(at.ranks)));
     let share = base + chunk * meant / max(f32(countOneBits(cell.x)), 1.0);
-    let ranks = clamp(share, 0.0, 1.0) * prefix_weight(optical_step, block_begin);
+    // Weights are in units of the integral of transmittance over 1 / extinction, so that none is divided.
+    let thickness = max(optical_step, 1e-30);
+    let texel = one_minus_exp(thickness);
+    let left = one_minus_exp(thickness * block_begin);
+    let whole = one_minus_exp(thickness * f32(at.column));
+    let covered = one_minus_exp(thickness * at.covered);
     // Eight columns at a time share a weight.
     let inside = at.column & 31u;
     let dark = at.less & low_bits(inside);
-    let eighth = exp(-8.0 * optical_step);
+    let through = 1.0 - texel;
+    let square = through * through;
+    let eighth = square * square * square * square;
     var columns_dark = f32(countOneBits(dark >> 24u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xff0000u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xff00u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xffu));
-    let first = exp(-optical_step * block_begin);
-    let last = prefix_weight(optical_step, at.part) * exp(-optical_step * f32(inside));
-    let inner = columns_dark * exp(-3.5 * optical_step) + select(0.0, last, ((at.less >> inside) & 1u) != 0u);
-    return clamp(1.0 - (ranks + first * inner) / prefix_weight(optical_step, at.covered), 0.0, 1.0);
+    let block = (1.0 - left) * texel * columns_dark * square * through * sqrt(through);
+    let last = select(0.0, max(covered - whole, 0.0), ((at.less >> inside) & 1u) != 0u);
+    return clamp(1.0 - (clamp(share, 0.0, 1.0) * left + block + last) / covered, 0.0, 1.0);
 }
