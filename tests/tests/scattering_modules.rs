@@ -315,3 +315,31 @@ fn cones_are_cut_where_they_are() {
     println!("{empty} missed, {split} in two parts");
     assert!(empty > 300 && split > 100);
 }
+
+#[test]
+fn greatest_sine_of_a_slice_is_within_two_percent() {
+    let _turn = gpu::turn();
+    let probe = Probe {
+        head: "#import airlight::scattering::rectify::{Slice, greatest_sine}",
+        body: "output(0u, greatest_sine(Slice(input(0u), input(1u), 1.0, 0.5)));",
+        inputs: 2,
+        outputs: 1,
+    };
+    let mut random = Random(717);
+    let bounds: Vec<[f32; 2]> = (0..2000)
+        .map(|_| {
+            let ends = [random.between(0.0, PI), random.between(0.0, PI)];
+            [ends[0].min(ends[1]) as f32, ends[0].max(ends[1]) as f32]
+        })
+        .chain([[0.0, PI as f32], [0.0, 1e-3], [PI as f32 - 1e-3, PI as f32], [1.5, 1.6]])
+        .collect();
+    let found = probe.run(bounds.as_flattened());
+    let mut off_right_angles = 0;
+    let errors = bounds.iter().zip(&found).map(|(bounds, found)| {
+        let [min, max] = bounds.map(f64::from);
+        off_right_angles += usize::from(max < 0.5 * PI || min > 0.5 * PI);
+        ((0.5 * PI).clamp(min, max).sin() - f64::from(*found)).abs()
+    });
+    hold("greatest sine of a slice", worst(errors), 0.02);
+    assert!(off_right_angles > 500);
+}
