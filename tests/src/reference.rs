@@ -7,3 +7,4 @@ pub mod light;
 pub mod phase;
 pub mod prefix_sum;
 pub mod scattering;
+pub mod stylize;

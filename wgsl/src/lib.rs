@@ -115,6 +115,8 @@ modules! {
         "scattering::rows", "scattering::visibility_fourier", "scattering::visibility_moments",
         "scattering::visibility_rank"
     ],
+    stylize::morphology [],
+    stylize::epipolar_dilate ["core::finite"],
 }
 
 passes! {
@@ -137,6 +139,10 @@ passes! {
     scattering/reduce_depth,
     scattering/upsample,
     scattering/composite,
+    stylize/sliding_extremum,
+    stylize/disc,
+    stylize/epipolar_direct,
+    stylize/epipolar_return,
 }
 
-systems![core, scattering];
+systems![core, scattering, stylize];

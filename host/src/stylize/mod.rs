@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Light shafts in the hands of an artist: the host's side of `wgsl/stylize`.
+//!
+//! [`Morphology`] closes holes of a shadow map with a box or a disc; [`EpipolarMorphology`] extrudes its blockers
+//! along view rays, where the camera cannot see it.
+
+mod epipolar;
+mod epipole;
+mod error;
+mod kernel;
+mod morphology;
+
+pub use epipolar::{EpipolarBound, EpipolarKernel, EpipolarMorphology, EpipolarSettings, Form};
+pub use epipole::Epipole;
+pub use error::StylizeError;
+pub use kernel::{Element, Operator, Width};
+pub use morphology::{Disc, Morphology, MorphologyBound, MorphologySettings, Window};
+
+use crate::gpu::Gpu;
+use crate::pass::{Bound, Pass};
+use crate::resource::Texture;
+use wgpu::TextureFormat::R32Float;
+
+/// A dispatch: which pass, what it is given, over how many invocations.
+struct Step {
+    pass: usize,
+    bound: Bound,
+    size: [u32; 3],
+}
+
+fn record(passes: &[Pass], steps: &[Step], encoder: &mut wgpu::CommandEncoder) {
+    for step in steps {
+        passes[step.pass].dispatch(encoder, &step.bound, step.size);
+    }
+}
+
+/// A map of values that a pass writes and the next reads.
+fn values(gpu: &Gpu, size: [u32; 2]) -> Texture {
+    Texture::storage(gpu, size, R32Float)
+}
