@@ -53,17 +53,18 @@ struct EpipolarLine {
     distance: f32,
 }
 
-/// A line of the map from one of its sides towards the epipole.
+/// A line of the map from one of its sides on: towards the eye, or for one behind the light away from it, which is towards the
+/// place of the epipole in both cases.
 struct EpipolarRow {
     /// Side at which it begins: 0 greatest x, 1 least x, 2 greatest y, 3 least y.
     side: u32,
     /// Texel of that side.
     index: u32,
-    /// Centre of that texel.
+    /// Where it begins: the centre of that texel, or the middle of its edge where the line is longer along the side.
     begin: vec2<f32>,
-    /// One step towards the epipole, texels.
+    /// One step, texels: 1 along the longer axis.
     step: vec2<f32>,
-    /// Distance of the epipole from the beginning, as in EpipolarLine.
+    /// Distance of the epipole at the beginning, as in EpipolarLine.
     distance: f32,
     /// Steps inside the map, the first texel counted.
     length: u32,
@@ -122,6 +123,11 @@ fn carried_depth(epipole: Epipole, far_depth: f32, depth: f32, distance: f32, st
     return select(clamp(carried, -1e29, 1e29), EMPTY, depth >= EMPTY);
 }
 
+/// 1 where rows run towards the eye, -1 where they run away from it.
+fn row_sense(epipole: Epipole) -> f32 {
+    return select(1.0, -1.0, epipole.weight < 0.0);
+}
+
 /// The line that begins at a texel of a side. `number`: side times the longer side of the map, plus the texel.
 fn epipolar_row(epipole: Epipole, size: vec2<u32>, number: u32) -> EpipolarRow {
     let longer = max(size.x, size.y);
@@ -129,17 +135,28 @@ fn epipolar_row(epipole: Epipole, size: vec2<u32>, number: u32) -> EpipolarRow {
     let index = number % longer;
     let extent = vec2<f32>(size);
     let across = f32(index) + 0.5;
-    let far_end = select(vec2<f32>(0.5), extent - 0.5, (side & 1u) == 0u);
-    let begin = select(vec2<f32>(far_end.x, across), vec2<f32>(across, far_end.y), side >= 2u);
+    // Steps fall onto the centres of texels along the longer axis of the line.
+    let last = (side & 1u) == 0u;
+    let centre = side_point(side, across, select(vec2<f32>(0.5), extent - 0.5, last));
+    let slope = abs(line_towards(epipole, centre).step);
+    let crossing = select(slope.x >= slope.y, slope.y >= slope.x, side >= 2u);
+    let edge = side_point(side, across, select(vec2<f32>(0.0), extent, last));
+    let begin = select(edge, centre, crossing);
     let line = line_towards(epipole, begin);
+    let step = row_sense(epipole) * line.step;
     // Steps before the line leaves the map, and before it comes to the epipole.
-    let room = select(begin, extent - begin, line.step > vec2<f32>(0.0)) / max(abs(line.step), vec2<f32>(1e-6));
+    let room = select(begin, extent - begin, step > vec2<f32>(0.0)) / max(abs(step), vec2<f32>(1e-6));
     let least = least_distance(epipole);
-    let free = (line.distance - least) / max(epipole.weight, 1e-12);
-    let steps = min(min(room.x, room.y), select(f32(longer), free, epipole.weight > 0.0));
+    let free = (line.distance - least) / max(abs(epipole.weight), 1e-12);
+    let steps = min(min(room.x, room.y), free);
     let exists = index < select(size.y, size.x, side >= 2u) && line.distance > least;
     let length = select(0u, u32(clamp(ceil(steps), 0.0, f32(longer))), exists);
-    return EpipolarRow(side, index, begin, line.step, line.distance, length);
+    return EpipolarRow(side, index, begin, step, line.distance, length);
+}
+
+/// A point `across` along a side; `at` holds the side's coordinate.
+fn side_point(side: u32, across: f32, at: vec2<f32>) -> vec2<f32> {
+    return select(vec2<f32>(at.x, across), vec2<f32>(across, at.y), side >= 2u);
 }
 
 /// Where the texture of all lines, twice as wide and high as the longer side of the map, holds a step of a line.
@@ -148,15 +165,17 @@ fn row_place(size: vec2<u32>, row: EpipolarRow, along: u32) -> vec2<u32> {
     return vec2<u32>((row.side & 1u) * longer + along, (row.side >> 1u) * longer + row.index);
 }
 
-/// Number of the line that passes next to `at`, the centre of a texel: the one that begins at the texel of the side where the
-/// line through `at` leaves the map, going away from the epipole.
+/// Number of the line that passes next to `at`, the centre of a texel: the one that begins where the line through `at` leaves
+/// the map, going back against the direction of rows.
 fn row_through(epipole: Epipole, size: vec2<u32>, at: vec2<f32>) -> u32 {
     let extent = vec2<f32>(size);
-    let away = -line_towards(epipole, at).step;
-    let forward = away > vec2<f32>(0.0);
-    let steps = select(at - 0.5, extent - 0.5 - at, forward) / max(abs(away), vec2<f32>(1e-12));
+    let back = -row_sense(epipole) * line_towards(epipole, at).step;
+    let forward = back > vec2<f32>(0.0);
+    // Rows begin half a texel inside along their longer axis.
+    let inset = select(vec2<f32>(0.0, 0.5), vec2<f32>(0.5, 0.0), abs(back.x) >= abs(back.y));
+    let steps = (select(at, extent - at, forward) - inset) / max(abs(back), vec2<f32>(1e-6));
     let by_x = steps.x <= steps.y;
-    let exit = at + min(steps.x, steps.y) * away;
+    let exit = at + min(steps.x, steps.y) * back;
     let along = select(exit.x, exit.y, by_x);
     let count = select(extent.x, extent.y, by_x);
     let side = select(select(3u, 2u, forward.y), select(1u, 0u, forward.x), by_x);
@@ -171,12 +190,13 @@ fn steps_along(row: EpipolarRow, at: vec2<f32>) -> u32 {
 
 /// Facing depth of a blocker `along` steps from the beginning of a line, carried there.
 fn depth_at_row_end(epipole: Epipole, far_depth: f32, row: EpipolarRow, depth: f32, along: f32) -> f32 {
-    return carried_depth(epipole, far_depth, depth, distance_after(epipole, row.distance, along), along);
+    let steps = row_sense(epipole) * along;
+    return carried_depth(epipole, far_depth, depth, distance_after(epipole, row.distance, steps), steps);
 }
 
 /// The reverse of `depth_at_row_end`.
 fn depth_in_row(epipole: Epipole, far_depth: f32, row: EpipolarRow, depth: f32, along: f32) -> f32 {
-    return carried_depth(epipole, far_depth, depth, row.distance, -along);
+    return carried_depth(epipole, far_depth, depth, row.distance, -row_sense(epipole) * along);
 }
 
 /// Result of morphology at a texel whose blocker was at the facing depth `original`.

@@ -6,7 +6,7 @@
 // definition COLUMNS: columns instead of rows.
 // definition EPIPOLAR: epipolar lines, stored as rows of a texture, see stylize/epipolar_dilate.
 // definition SHADOW_MAP: with EPIPOLAR, reads the lines from the shadow map, and stores depths carried to their ends.
-// binding window: the window, the sign of the extremum.
+// binding window: the window, the sign of the extremum; with EPIPOLAR for lines that run towards the eye, turned round for others.
 // binding values: without EPIPOLAR the shadow map, a depth format or r32float; with it the lines, r32float.
 // binding extrema: out, r32float, of the size of the map, or of the lines.
 // binding epipole: the eye in the map; with EPIPOLAR only.
@@ -15,7 +15,7 @@
 #import airlight::core::finite::finite_or
 #import airlight::stylize::morphology::Window
 #import airlight::stylize::epipolar_dilate::{
-    Epipole, EpipolarRow, epipolar_row, row_place, blocker_from_stored, depth_at_row_end
+    Epipole, EpipolarRow, epipolar_row, row_place, row_sense, blocker_from_stored, depth_at_row_end
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> window: Window;
@@ -32,6 +32,11 @@ fn line_at(number: u32) -> EpipolarRow {
     return epipolar_row(epipole, textureDimensions(shadow_map), number);
 }
 
+/// Texels of the window before the own one, and behind it.
+fn window_reach() -> vec2<u32> {
+    return select(vec2<u32>(window.before, window.after), vec2<u32>(window.after, window.before), row_sense(epipole) < 0.0);
+}
+
 /// How many lines there are.
 fn line_count() -> u32 {
     let size = textureDimensions(shadow_map);
@@ -43,6 +48,11 @@ fn place(line: EpipolarRow, along: u32) -> vec2<u32> {
     return row_place(textureDimensions(shadow_map), line, along);
 }
 #else
+/// Texels of the window before the own one, and behind it.
+fn window_reach() -> vec2<u32> {
+    return vec2<u32>(window.before, window.after);
+}
+
 /// A row or column.
 struct PlainLine {
     /// Which.
@@ -109,7 +119,8 @@ fn sliding_extremum(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let line = line_at(id.x);
     // The texels of one residue of the stride are a row of their own; this is a block of it.
-    let width = window.before + window.after + 1u;
+    let reach = window_reach();
+    let width = reach.x + reach.y + 1u;
     let residue = id.y % window.stride;
     let first = (id.y / window.stride) * width;
     let begin = i32(residue + first * window.stride);
@@ -121,7 +132,7 @@ fn sliding_extremum(@builtin(global_invocation_id) id: vec3<u32>) {
 
     // Extrema from each texel on to the end of the first window: of what lies in it before its last texel.
     var suffix: array<f32, 64>;
-    let back = begin - i32(window.before) * step;
+    let back = begin - i32(reach.x) * step;
     var extremum = value_at(line, u32(clamp(back + i32(width - 1u) * step, 0, last)));
     suffix[width - 1u] = extremum;
     for (var k = i32(width) - 2; k >= 0; k--) {
@@ -130,7 +141,7 @@ fn sliding_extremum(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     // That last texel lies in the windows of the whole block.
     extremum = suffix[width - 1u];
-    let ahead = begin + i32(window.after) * step;
+    let ahead = begin + i32(reach.y) * step;
     for (var k = 0; k < i32(width); k++) {
         let along = begin + k * step;
         if along > last {

@@ -56,9 +56,10 @@ impl Epipole {
         distance(t) / distance(s)
     }
 
-    /// Texels along the longer axis from a point to the epipole; infinite where lines do not end at it.
+    /// Texels along the longer axis from a point to the epipole's place in the map; infinite where it has none. For an eye behind
+    /// the light view rays go towards it, and end there.
     fn remaining(&self, [x, y]: [f64; 2]) -> f64 {
-        if self.weight <= 0.0 {
+        if self.weight == 0.0 {
             return f64::INFINITY;
         }
         (self.x / self.weight - x).abs().max((self.y / self.weight - y).abs())
@@ -139,7 +140,7 @@ impl Kernel<'_> {
         for step in 1..self.width {
             let along = sign * step as f64 / longer;
             let s = [t[0] + along * dx, t[1] + along * dy];
-            let left = self.epipole.remaining(t) - sign * step as f64;
+            let left = self.epipole.remaining(t) - sign * self.epipole.weight.signum() * step as f64;
             let slack = 3e-7 * (self.epipole.remaining(t).min(1e9) + t[0] + t[1]);
             if left < LEAST_DISTANCE - slack {
                 break;

@@ -33,15 +33,16 @@ impl Morphology<'_> {
         better: fn(f64, f64) -> f64,
     ) -> f64 {
         let mut best = value(x, y);
-        for dy in -self.radius..=self.radius {
-            for dx in -self.radius..=self.radius {
-                let (u, v) = (x as i64 + dx, y as i64 + dy);
-                let inside = u >= 0 && v >= 0 && u < self.map.width as i64 && v < self.map.height as i64;
+        let [x, y] = [x as i64, y as i64];
+        let [right, bottom] = [self.map.width as i64 - 1, self.map.height as i64 - 1];
+        for v in (y - self.radius).max(0)..=(y + self.radius).min(bottom) {
+            for u in (x - self.radius).max(0)..=(x + self.radius).min(right) {
+                let (dx, dy) = (u - x, v - y);
                 let holds = match self.element {
                     Element::Box => true,
                     Element::Disc => dx * dx + dy * dy <= self.radius * self.radius,
                 };
-                if inside && holds {
+                if holds {
                     best = better(best, value(u as usize, v as usize));
                 }
             }
