@@ -98,7 +98,8 @@ fn every_operator_equals_its_reference_everywhere() {
     let sizes = [[1, 1], [1, 7], [9, 1], [2, 3], [13, 31], [64, 48], [128, 128]];
     for size in sizes {
         let longer = size[0].max(size[1]);
-        for width in [1, 3, 5, 11, 31, 63, 65, 67, 2 * longer - 1, 2 * longer + 41] {
+        let widths: &[u32] = if longer == 128 { &[5, 31, 63, 65, 169] } else { &[1, 3, 11, 65] };
+        for width in widths.iter().copied().chain([2 * longer - 1, 2 * longer + 41]) {
             for element in ELEMENTS {
                 // The reference looks at every texel of every window.
                 let heavy = longer == 128 && width > 31;
