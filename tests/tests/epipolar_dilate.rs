@@ -246,11 +246,13 @@ fn the_rectified_form_is_the_direct_one_within_resampling() {
         let longer = size[0].max(size[1]);
         for width in [3, 15, 71, 2 * longer + 41] {
             let big = longer == 128 && width > 15;
-            // Not openings: their erosion begins at samples nearer to the epipole, and lines spread from there on.
+            // Not where the second kernel begins nearer to the epipole and runs away from it, since lines spread from
+            // there on: openings, and closings of an eye behind the light.
             for operator in if big { &OPERATORS[..2] } else { &OPERATORS[..3] } {
                 let settings = settings(*operator, Form::Rectified, width, DepthRange::Forward);
                 let morphology = built(settings, size);
-                for (name, epipole) in epipoles(&mut random, size) {
+                let spreads = |epipole: &Epipole| *operator == Operator::Closing && epipole.weight < 0.0;
+                for (name, epipole) in epipoles(&mut random, size).into_iter().filter(|e| !spreads(&e.1)) {
                     let noise = random_map(&mut random, size, 1.0);
                     let values = if random.unit() < 0.5 { &noise } else { &drawn };
                     let found = morph_with(&morphology, &epipole, &texture(size, values));
