@@ -120,11 +120,20 @@ fn agrees(at: &Path, setup: &str, own: &str, reason: &str, tolerance: f64) {
 fn rows_of_a_directional_light_agree_with_the_march() {
     let at = scene();
     let at = at.path();
-    agrees(at, SUN, "", "epipolar (moments and rank", 0.015);
-    agrees(at, SUN, "--method rank --bits 8", "epipolar (moments and rank", 0.02);
-    agrees(at, SUN, "--method moments", "epipolar (moments and rank", 0.03);
+    agrees(at, SUN, "", "epipolar (rank queries need", 0.015);
+    agrees(at, SUN, "--method rank --bits 8", "epipolar (rank queries need", 0.02);
+    agrees(at, &format!("{SUN} --average"), "--method wavelet", "epipolar (", 0.015);
+    agrees(at, SUN, "--method moments", "epipolar (moments", 0.03);
     agrees(at, SUN, "--method fourier", "projective (", 0.03);
-    agrees(at, SUN, "--rectification projective --splits 4", "projective (as asked for)", 0.03);
+    agrees(at, SUN, "--rectification projective --splits 4", "projective (as asked for)", 0.015);
+    agrees(
+        at,
+        SUN,
+        "--rectification projective --splits 4 --method fourier",
+        "projective (as asked for)",
+        0.03,
+    );
+    agrees(at, SUN, "--method rank --splits 3", "projective (the light is outside", 0.015);
     let rows = &Run::new(at, "hall.obj", &format!("{SUN} --splits 4")).buffers["rows"];
     // The words of the uniform; the number of splits is an integer.
     assert_eq!((rows.0[0], rows.1[22].to_bits()), (24, 4));
@@ -132,8 +141,8 @@ fn rows_of_a_directional_light_agree_with_the_march() {
     agrees(at, SUN, "--reference optimum --regions 3", "epipolar (--reference", 0.03);
     let ahead = format!("{EYE} --light directional:185,12");
     // Rows around a light in the picture hold rays of all angles, which share their weights; plain means are exact.
-    agrees(at, &ahead, "", "epipolar (moments and rank", 0.05);
-    agrees(at, &format!("{ahead} --average"), "", "epipolar (moments and rank", 0.02);
+    agrees(at, &ahead, "", "epipolar (rank queries need", 0.05);
+    agrees(at, &format!("{ahead} --average"), "", "epipolar (rank queries need", 0.02);
     agrees(at, &ahead, "--half --bases 64", "epipolar (the light is in the picture", 0.06);
     agrees(at, &format!("{ahead} --average"), "--half --bases 64", "epipolar (the light is in", 0.03);
     agrees(at, &format!("{SUN} --average"), "--regions 4 --splits 2", "projective (", 0.04);
@@ -143,8 +152,8 @@ fn rows_of_a_directional_light_agree_with_the_march() {
 fn depth_of_every_kind_is_taken() {
     let at = scene();
     let at = at.path();
-    agrees(at, &format!("{SUN} --depth-range reversed"), "", "epipolar (moments and rank", 0.015);
-    agrees(at, &format!("{SUN} --depth-range infinite --far 14"), "", "epipolar (moments and rank", 0.015);
+    agrees(at, &format!("{SUN} --depth-range reversed"), "", "epipolar (rank queries need", 0.015);
+    agrees(at, &format!("{SUN} --depth-range infinite --far 14"), "", "epipolar (rank queries need", 0.015);
     agrees(at, &format!("{SUN} --depth-range reversed"), "--method fourier", "projective (", 0.03);
     agrees(at, &format!("{SUN} --depth-range infinite --far 14"), "--method fourier", "projective (", 0.03);
     agrees(at, &format!("{POINT} --depth-range infinite"), "", "epipolar (", 0.03);
@@ -291,7 +300,7 @@ fn two_eyes_see_what_each_would() {
     let look = Vec3::new(-0.5, -0.1, -6.0);
     let right = look.cross(Vec3::Y).normalize() * 0.2;
     for (light, method, reason) in [
-        ("directional:95,35", "auto", "epipolar (moments and rank"),
+        ("directional:95,35", "auto", "epipolar (rank queries need"),
         ("directional:95,35", "fourier", "projective"),
         ("spot:-2,4,1,0,0.5,0,30", "auto", "epipolar (rows of a spot"),
     ] {
@@ -331,6 +340,7 @@ fn flags_of_the_filter_reach_it() {
         ("fourier", " --bases 16", "bases"),
         ("rank", " --bits 10", "rank_starts"),
         ("rank", " --average", "rank_cells"),
+        ("wavelet --average", " --bits 10", "wavelet"),
         ("moments", " --average", "moments"),
     ] {
         let method = format!(" --method {method}");
@@ -386,7 +396,11 @@ fn awkward_sizes_draw() {
         "--size 3x2 --map 1x2 --bases 4 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png",
         "--size 1x1 --map 1x1 --shadow-map 1x1 --method rank",
         "--size 5x3 --map 33x2 --shadow-map 1x1 --method rank --bits 8 --resolution quarter --start near-plane",
+        "--size 3x2 --map 33x2 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png --method rank",
+        "--size 3x2 --map 33x2 --shadow-map 2x2 --light point:0,3,0 --method rank --bits 8",
+        "--size 3x2 --map 31x2 --shadow-map 2x2 --rectification projective --splits 4",
         "--size 3x2 --map 1x2 --shadow-map 1x2 --method moments --start near-plane",
+        "--size 3x5 --map 65x2 --shadow-map 1x1 --method wavelet --average --bits 10 --start near-plane",
         // Wider than rank queries take: bases.
         "--size 3x2 --map 2049x2 --shadow-map 2x2",
     ] {

@@ -69,23 +69,32 @@ fn flags_that_cannot_be_meant_are_refused() {
     for flag in ["--rectification projective", "--splits 2", "--regions 2", "--reference optimum"] {
         bad(&format!("--method march {flag}"), &[flag.split(' ').next().unwrap(), "--method fourier"]);
     }
-    for method in ["rank", "moments"] {
-        for flag in ["--bases 16", "--half", "--regions 2", "--splits 2", "--rectification projective"] {
+    for method in ["rank", "moments", "wavelet --average"] {
+        for flag in ["--bases 16", "--half", "--regions 2"] {
             let parts = [flag.split(' ').next().unwrap(), "--method fourier"];
             bad(&format!("--method {method} {flag}"), &parts);
         }
-        for other in [spot, point, orthographic, "--light-texture glass.png"] {
-            bad(&format!("--method {method} {other}"), &["--method", "take auto"]);
-        }
+    }
+    for flag in ["--splits 2", "--rectification projective"] {
+        let parts = [flag.split(' ').next().unwrap(), "--method rank"];
+        bad(&format!("--method moments {flag}"), &parts);
+    }
+    for other in [spot, point, orthographic, "--light-texture glass.png"] {
+        bad(&format!("--method moments {other}"), &["--method", "take auto"]);
     }
     for bits in ["7", "13", "ten"] {
         bad(&format!("--bits {bits}"), &["--bits", bits]);
     }
-    for other in ["--method fourier", "--method march", "--half", spot] {
+    for other in ["--method fourier", "--method march", "--half"] {
         bad(&format!("--bits 10 {other}"), &["--bits", "--method rank"]);
     }
-    let wide = ["scattering", "--mesh", "hall.obj", "--out", "x.exr", "--method", "rank", "--map", "2049x64"];
-    refuses(at.path(), &wide, 2, &["--map", "2048", "--method auto"]);
+    bad("--method wavelet", &["--method", "`wavelet`", "--average", "--method rank"]);
+    bad("--method wavelet --average --bits 9", &["--bits", "8, 10 or 12"]);
+    for method in ["rank", "wavelet"] {
+        let mut wide = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr", "--average"];
+        wide.extend(["--method", method, "--map", "2049x64"]);
+        refuses(at.path(), &wide, 2, &["--map", "2048", "--method auto"]);
+    }
     bad("--method march --start near-plane", &["--start", "--method fourier"]);
     bad("--jitter gradient", &["--jitter", "--method march"]);
     bad(&format!("--method march {spot} --jitter gradient"), &["--jitter", "leave it out"]);

@@ -168,7 +168,12 @@ fn entry(line: &str) -> Option<&str> {
 }
 
 /// Modules that hold what several passes bind.
-const CALLBACKS: [&str; 2] = ["scattering/lit.wgsl", "scattering/prefiltered.wgsl"];
+const CALLBACKS: [&str; 4] = [
+    "scattering/lit.wgsl",
+    "scattering/prefiltered.wgsl",
+    "scattering/column_weights.wgsl",
+    "scattering/rank_sort.wgsl",
+];
 
 #[test]
 fn every_binding_and_definition_is_explained() {
@@ -289,10 +294,13 @@ fn a_composer_is_filled_in_five_lines() {
     for pass in PASSES {
         let definitions = [("GROUP", 1), ("BASES", 32), ("BASES_PER_THREAD", 8)];
         // Rank queries take the place of bases: only the pass that makes their structure is told.
-        let rank = (pass.name == "scattering/rank").then_some(("RANK", 12));
+        let ranks = ["scattering/rank", "scattering/rank_weights", "scattering/wavelet"];
+        let rank = ranks.contains(&pass.name).then_some(("RANK", 12));
+        let weights = (pass.name == "scattering/rank_weights").then_some(("WEIGHT_BITS", 8));
         let shader_defs: HashMap<_, _> = definitions
             .into_iter()
             .chain(rank)
+            .chain(weights)
             .map(|(name, value)| (name.to_owned(), ShaderDefValue::Int(value)))
             .collect();
         let descriptor = NagaModuleDescriptor {

@@ -7,6 +7,8 @@
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/probing.rs"]
+mod probing;
 
 use airlight::scattering::{
     Filtering, Inputs, LightForm, Medium, Prefiltered, ProjectiveMap, ProjectivePrefiltered, Rectification,
@@ -17,6 +19,7 @@ use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;
 use glam::Vec3;
 use gpu::{Probe, Random, gpu, shaders};
+use probing::hold;
 use wgpu::TextureFormat::{R32Float, Rgba32Float, Rgba32Uint};
 
 /// MOMENT_BIAS and MOMENT_BLEND of the shader.
@@ -24,12 +27,6 @@ const BIAS: f64 = 1e-5;
 const BLEND: f64 = 0.15;
 /// One step of a stored moment.
 const STEP: f64 = 2.0 / 2_097_151.0;
-
-/// Prints and holds a measured error.
-fn hold(what: &str, error: f64, budget: f64) {
-    println!("{what}: {error:.2e} of at most {budget:.1e}");
-    assert!(error <= budget, "{what}: {error:e} exceeds {budget:e}");
-}
 
 /// Depths of the texels of a prefix: of all kinds, degenerate ones among them.
 fn prefix(random: &mut Random) -> Vec<f64> {

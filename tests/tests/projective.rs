@@ -14,7 +14,7 @@ use airlight::data::{Mesh, plane};
 use airlight::scattering::{
     Along, BasisFormat, Choice, Inputs, March, Medium, OBLIQUENESS_LIMIT, Projective, ProjectiveError,
     ProjectiveMap, ProjectivePrefiltered, ProjectiveRaster, ProjectiveRows, Settings, SettingsError, Start,
-    Weighting, choose, projective_rows,
+    Visibility, Weighting, choose, projective_rows,
 };
 use airlight::{Buffer, Lighting, Texture, scenes};
 use airlight_tests::error;
@@ -774,11 +774,23 @@ fn pictures_reach_their_figures() {
             let error = error::mean_absolute(&found.visibility, &exact.average());
             let (weighted, _) = stage.prefiltered(stage.map(map, splits), Settings::default());
             let radiance = error::relative_rmse(&weighted.radiance, &exact.radiance());
+            let rank = Visibility::Rank { bits: 12 };
+            let (plain, _) =
+                stage.prefiltered(stage.map(map, splits), Settings { visibility: rank, ..average });
+            let (ranked, _) = stage
+                .prefiltered(stage.map(map, splits), Settings { visibility: rank, ..Settings::default() });
+            let of_ranks = error::mean_absolute(&plain.visibility, &exact.average());
+            let ranked = error::relative_rmse(&ranked.radiance, &exact.radiance());
             println!(
-                "{name}, {splits} splits, obliqueness {:.1}: visibility {error:.5} of at most {budget}, radiance {:.2} %",
+                "{name}, {splits} splits, obliqueness {:.1}: visibility {error:.5} of at most {budget}, radiance {:.2} %; \
+                 rank queries {of_ranks:.5}, {:.2} %",
                 stage.projective(splits).obliqueness,
-                100.0 * radiance
+                100.0 * radiance,
+                100.0 * ranked
             );
+            if !(of_ranks <= 0.2 * error && ranked <= radiance) {
+                failures.push(format!("{name}, {splits} splits: rank queries {of_ranks}, {ranked}"));
+            }
             if !(error <= budget && radiance <= 0.03) {
                 failures.push(format!("{name}, {splits} splits: {error} {radiance}"));
             }
@@ -902,6 +914,14 @@ fn regions_and_near_planes_keep_the_figures() {
                 100.0 * error,
                 100.0 * budget
             );
+            if regions == 1 {
+                let rank = Settings { visibility: Visibility::Rank { bits: 12 }, ..settings };
+                let (ranked, _) = stage.prefiltered(stage.map([510, 512], 3), rank);
+                let ranked = error::relative_rmse(&ranked.radiance, &exact.radiance());
+                println!("terrain {name}, rank queries: radiance {:.2} %", 100.0 * ranked);
+                // In thick air both err by what the weights of the reference ray do.
+                assert!(ranked <= error + 5e-4, "{name}: {ranked}");
+            }
             // Regions are put together by the ray's own weights: never worse.
             assert!(error <= budget && error <= before + 5e-4, "{name}, {regions} regions: {error}");
             before = error;
@@ -937,19 +957,25 @@ fn a_row_lit_up_to_a_column_has_its_closed_form() {
         let row: Vec<f32> = (0..SIZE[0]).map(|column| if column < lit { 1.0 } else { 0.0 }).collect();
         let rows = stage.reference_rows(SIZE, splits);
         let edge = rows.x_of(f64::from(lit));
-        let mut worst = [0.0_f64; 2];
+        let mut worst = [0.0_f64; 4];
         for weighting in [Weighting::Average, Weighting::Transmittance] {
             let map = stage.map(SIZE, splits);
             map.rectified.write(gpu(), &row.repeat(SIZE[1] as usize)).unwrap();
             let marched = stage.marched(&map, weighting);
             let settings = Settings { weighting, bases: 128, epipole_march: false, ..Settings::default() };
-            let method = ProjectivePrefiltered::new(gpu(), shaders(), map, settings, PICTURE).unwrap();
-            let bound = method.bind(gpu(), &stage.inputs()).unwrap();
-            let mut encoder = gpu().encoder();
-            method.record_filter(&mut encoder, &bound);
-            method.record_evaluation(&mut encoder, &bound);
-            gpu().submit(encoder).unwrap();
-            let found = scattered(&method.scattered);
+            let evaluated = |map: ProjectiveMap, settings: Settings| {
+                map.rectified.write(gpu(), &row.repeat(SIZE[1] as usize)).unwrap();
+                let method = ProjectivePrefiltered::new(gpu(), shaders(), map, settings, PICTURE).unwrap();
+                let bound = method.bind(gpu(), &stage.inputs()).unwrap();
+                let mut encoder = gpu().encoder();
+                method.record_filter(&mut encoder, &bound);
+                method.record_evaluation(&mut encoder, &bound);
+                gpu().submit(encoder).unwrap();
+                scattered(&method.scattered)
+            };
+            let found = evaluated(map, settings);
+            let rank = Settings { visibility: Visibility::Rank { bits: 8 }, ..settings };
+            let ranked = evaluated(stage.map(SIZE, splits), rank);
             let sigma = if weighting == Weighting::Average { 0.0 } else { f64::from(extinction) };
             let weight = |t: f64| if sigma == 0.0 { t } else { -(-sigma * t).exp_m1() / sigma };
             for (i, depth) in depths.iter().enumerate() {
@@ -960,14 +986,19 @@ fn a_row_lit_up_to_a_column_has_its_closed_form() {
                 let expected = weight(distance.min(edge / cosine)) / weight(distance);
                 worst[0] = worst[0].max((f64::from(marched.visibility[i]) - expected).abs());
                 worst[1] = worst[1].max((f64::from(found.visibility[i]) - expected).abs());
+                let of_ranks = if weighting == Weighting::Average { 2 } else { 3 };
+                worst[of_ranks] = worst[of_ranks].max((f64::from(ranked.visibility[i]) - expected).abs());
             }
         }
         println!(
-            "{splits} splits, lit up to {edge:.2} m, extinction {extinction}: march {:.1e}, bases {:.1e}",
-            worst[0], worst[1]
+            "{splits} splits, lit up to {edge:.2} m, extinction {extinction}: march {:.1e}, bases {:.1e}, \
+             rank queries {:.1e}, weighted {:.1e}",
+            worst[0], worst[1], worst[2], worst[3]
         );
         // f16 of the picture and f32 of the sums; 8 bits and 128 bases at the ends of the depth range.
         assert!(worst[0] < 1.5e-3 && worst[1] < 0.01, "{splits}: {worst:?}");
+        // Rays weigh a little otherwise than the reference ray of their row.
+        assert!(worst[2] < 1.0e-3 && worst[3] < 4e-3, "{splits}: {worst:?}");
     }
 }
 
@@ -1017,11 +1048,12 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     };
     let plain =
         Settings { window: false, epipole_march: false, regions: 3, weighting: Weighting::Average, ..base };
-    let methods = [base, plain].map(|settings| {
+    let rank = Settings { visibility: Visibility::Rank { bits: 10 }, ..base };
+    let methods = [base, plain, rank].map(|settings| {
         let map = ProjectiveMap::resampled(gpu(), shaders(), SMALL).unwrap();
         ProjectivePrefiltered::new(gpu(), shaders(), map, settings, SMALL).unwrap()
     });
-    let bound = [0, 1].map(|i| methods[i].bind(gpu(), &inputs).unwrap());
+    let bound = [0, 1, 2].map(|i| methods[i].bind(gpu(), &inputs).unwrap());
     let along = Along::Projective(&methods[0].map);
     let march = March::new(gpu(), shaders(), &along, Weighting::Transmittance, SMALL).unwrap();
     let march_bound = march.bind(gpu(), &inputs, &along).unwrap();
@@ -1075,17 +1107,18 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
         };
         depth.write(gpu(), &depths(128)).unwrap();
         shadow_map.write(gpu(), &depths(64)).unwrap();
-        let method = &methods[done % 2];
+        let method = &methods[done % 3];
         method.write(gpu(), &rows).unwrap();
         methods[0].map.write(gpu(), &rows);
         let mut encoder = gpu().encoder();
-        method.record(&mut encoder, &bound[done % 2]);
+        method.record(&mut encoder, &bound[done % 3]);
         march.record(&mut encoder, &march_bound);
         gpu().submit(encoder).unwrap();
         let name = || format!("case {done}: {host:?} {rows:?} {air:?}");
         let map = method.map.rectified.read(gpu()).unwrap();
         assert!(map.iter().all(|z| (0.0..=1.0).contains(z)), "{}", name());
-        let bases = method.prefilter.stored().read(gpu()).unwrap();
+        let stored = &method.prefilter.textures()[0];
+        let bases = if stored.0 == "bases" { stored.1.read(gpu()).unwrap() } else { Vec::new() };
         assert!(bases.iter().all(|b| (-0.01..=1.01).contains(b)), "{}", name());
         for texture in [&method.scattered, &march.scattered] {
             for texel in texture.read(gpu()).unwrap().chunks_exact(4) {

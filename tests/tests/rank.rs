@@ -21,13 +21,28 @@ use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;
 use gpu::{Probe, Random, gpu, shaders};
 use probing::hold;
-use rank::{KINDS, Query, Structure, clear_of_borders, row_of_kind};
+use rank::{KINDS, Query, Structure, clear_of_borders, queries, row_of_kind};
 use reference::SteppedRow;
 
-/// What f32 makes of a mean of up to 2048 texels: of a division, and of a subtraction from 1.
-const ROUNDING: f64 = 3e-7;
 /// What it makes of weighted means: a ratio of two weights, each stated to be good to 1e-6, and a few exponentials.
 const WEIGHTED_ROUNDING: f64 = 3e-6;
+
+/// The bound of docs/src/rank.md for a query of a weighted structure over `covered` of `columns` texels. Optical depths of a texel,
+/// `ray`: of the ray, `least`: the lesser one that the structure was built for.
+fn weighted_bound(columns: u32, covered: f64, ray: f64, least: f64) -> f64 {
+    let weight = |step: f64, texels: f64| {
+        if step == 0.0 { texels } else { (-step * texels).exp_m1() / (-step).exp_m1() }
+    };
+    // Columns left of the last block, and what the ray lies between.
+    let left = 32.0 * (covered.min(f64::from(columns - 1)) / 32.0).floor();
+    let least = least.max(1e-30);
+    let between = (ray - least) / least;
+    let depths = left * left * (ray - least).abs() * (ray - 2.0 * least).abs();
+    let steps = left / weight(2.0 * least, left).max(1.0) + 1.0;
+    let storage = (between.abs() + (1.0 - between).abs()) * steps * 2.0_f64.powi(-17);
+    let part = if covered > 0.0 { weight(ray, left) / weight(ray, covered) } else { 0.0 };
+    8.0 * -(-ray).exp_m1() + part * (depths / 62.0 + storage) + WEIGHTED_ROUNDING
+}
 
 #[test]
 fn depths_are_rounded_to_steps() {
@@ -72,102 +87,10 @@ fn depths_are_rounded_to_steps() {
     assert!(undecided * 50 < records.len());
 }
 
-/// Stretches of all kinds, texels.
-fn stretch(random: &mut Random, width: u32) -> f32 {
-    let wide = f64::from(width);
-    match random.below(10) {
-        0 => [0.0, 1e-4, 9.9e-4, 1.1e-3, 0.5][random.below(5)],
-        1 => width as f32,
-        2 => [wide + 0.5, 2.0 * wide, 1e9][random.below(3)] as f32,
-        3 => (32 * random.below(width.div_ceil(32) as usize + 1)) as f32,
-        4 => (32.0 * random.below(width.div_ceil(32) as usize + 1) as f64 + random.between(-1.0, 1.0))
-            .max(0.0) as f32,
-        5 | 6 => (1 + random.below(width as usize)) as f32,
-        _ => random.between(0.0, wide) as f32,
-    }
-}
-
-/// Depths of rays: the ends, values that are stored, whole steps, and others.
-fn ray_depth(random: &mut Random, row: &[f32], bits: u32) -> f32 {
-    let steps = (1_usize << bits) - 1;
-    match random.below(8) {
-        0 => [0.0, 1.0, -0.5, 1.5][random.below(4)],
-        1 => random.below(steps + 1) as f32 / steps as f32,
-        2..=5 => {
-            let stored = row[random.below(row.len())];
-            if stored.is_finite() { stored } else { 1.0 }
-        }
-        _ => loop {
-            let depth = random.unit() as f32;
-            if clear_of_borders(depth, bits) {
-                return depth;
-            }
-        },
-    }
-}
-
-fn queries(random: &mut Random, rows: &[Vec<f32>], bits: u32, count: usize) -> Vec<Query> {
-    (0..count)
-        .map(|_| {
-            let row = random.below(rows.len());
-            Query {
-                row: row as u32,
-                texels: stretch(random, rows[row].len() as u32),
-                depth: ray_depth(random, &rows[row], bits),
-                optical_step: 0.0,
-            }
-        })
-        .collect()
-}
-
 #[test]
 fn counts_are_exactly_those_of_the_stepped_map() {
     let _turn = gpu::turn();
-    const QUERIES: usize = 2000;
-    let mut random = Random(502);
-    let (mut asked, mut partly, mut worst, mut ties) = (0_usize, 0_usize, 0.0_f64, 0_usize);
-    for bits in [8, 10, 12] {
-        for width in [1, 2, 31, 32, 33, 100, 1000, 1024, 2048] {
-            for height in [1, 7_usize] {
-                let structure = Structure::new(bits, [width, height as u32], Weighting::Average);
-                // Maps of few rows take turns, so that every kind of row comes at every size.
-                for first in (0..KINDS).step_by(height) {
-                    let rows: Vec<Vec<f32>> = (first..first + height)
-                        .map(|kind| row_of_kind(&mut random, kind % KINDS, width as usize, bits))
-                        .collect();
-                    structure.build(&rows);
-                    let queries = queries(&mut random, &rows, bits, QUERIES / (KINDS / height).max(1));
-                    let stepped: Vec<SteppedRow> =
-                        rows.iter().map(|row| SteppedRow::new(row, bits)).collect();
-                    for (query, found) in queries.iter().zip(structure.ask(&queries)) {
-                        let row = &stepped[query.row as usize];
-                        let depth = f64::from(query.depth);
-                        let (lit, covered) = row.lit_texels(f64::from(query.texels), depth);
-                        let off = (f64::from(found) - lit / covered).abs();
-                        worst = if off <= worst { worst } else { off };
-                        let what = || format!("{bits} bits, {width}x{height}, kinds from {first}, {query:?}");
-                        assert!((0.0..=1.0).contains(&found), "{found}: {}", what());
-                        assert!(off <= ROUNDING, "{} of {lit} lit: {}", f64::from(found) * covered, what());
-                        if covered.fract() == 0.0 {
-                            let count = (f64::from(found) * covered).round();
-                            assert_eq!(count, lit, "of {covered}: {}", what());
-                        }
-                        asked += 1;
-                        partly += usize::from(0.0 < lit && lit < covered);
-                        let ray = reference::depth_step(depth, bits);
-                        let stored = &rows[query.row as usize];
-                        let equal = stored.iter().any(|v| reference::depth_step(f64::from(*v), bits) == ray);
-                        ties += usize::from(equal);
-                    }
-                }
-            }
-        }
-    }
-    println!(
-        "{asked} counts, {partly} neither none nor all, {ties} with equal steps in the row: no mismatch"
-    );
-    assert!(partly > asked / 5 && ties > asked / 3, "the cases are not varied enough");
-    hold("visibility from counts", worst, ROUNDING);
+    rank::hold_counts(502, |bits| Visibility::Rank { bits });
 }
 
 /// Rows that make the structure err most: in sorted order texels of the row's begin and its end take turns by halves of
@@ -204,23 +127,22 @@ fn weighted_means_err_by_no_more_than_proven() {
                 (0..12).map(|kind| row_of_kind(&mut random, kind % KINDS, width as usize, bits)).collect();
             let worst = worst_row(width as usize);
             rows.push(worst.iter().map(|v| if clear_of_borders(*v, bits) { *v } else { v + 1e-4 }).collect());
-            let optical_step = structure.build_weighted(&rows, optical_step);
+            let least_step = structure.build_weighted(&rows, optical_step);
             let mut queries = queries(&mut random, &rows, bits, 1500);
             for query in &mut queries {
-                query.optical_step = optical_step;
+                // Rays that cross texels as fast as the fastest, and some slower; a few faster, as rounding makes them.
+                query.optical_step = least_step * [1.0, random.between(0.9, 5.0) as f32][random.below(2)];
+                query.least_step = least_step;
             }
             let stepped: Vec<SteppedRow> = rows.iter().map(|row| SteppedRow::new(row, bits)).collect();
             for (query, found) in queries.iter().zip(structure.ask(&queries)) {
                 let (texels, depth, a) =
-                    (f64::from(query.texels), f64::from(query.depth), f64::from(optical_step));
+                    (f64::from(query.texels), f64::from(query.depth), f64::from(query.optical_step));
                 let row = &stepped[query.row as usize];
                 let exact = row.visibility(texels, depth, a).weighted;
                 let off = (f64::from(found) - exact).abs();
                 let (_, covered) = row.lit_texels(texels, depth);
-                let total = if a == 0.0 { covered } else { (-a * covered).exp_m1() / (-a).exp_m1() };
-                let ranks = 8.0 * -(-a).exp_m1();
-                let storage = f64::from(width) / 2.0_f64.powi(17) / total;
-                let bound = ranks + storage + WEIGHTED_ROUNDING;
+                let bound = weighted_bound(width, covered, a, f64::from(least_step));
                 if off.is_nan() || off > bound || !(0.0..=1.0).contains(&found) {
                     failures.push(format!("{width}, {query:?}: {found}, {exact}, bound {bound:.2e}"));
                 }
@@ -235,11 +157,10 @@ fn weighted_means_err_by_no_more_than_proven() {
             }
         }
         println!(
-            "optical step {optical_step:.0e}: mean {:.1e} (of 32 texels and more {:.1e}), greatest {greatest:.1e}, bound for \
-             the ranks {:.1e}, closest to the whole bound {tightest:.2}",
+            "optical step {optical_step:.0e}: mean {:.1e} (of 32 texels and more {:.1e}), greatest {greatest:.1e}, closest to \
+             its bound {tightest:.2}",
             mean / f64::from(count),
             typical / f64::from(typical_count),
-            8.0 * -(-f64::from(optical_step)).exp_m1()
         );
     }
     assert!(
@@ -268,7 +189,13 @@ fn eights_of_one_kind_in_the_first_block_are_all_but_exact() {
                 let part = if i % 4 == 0 { 0.0 } else { random.unit() };
                 // Not the whole row: its last column counts by itself.
                 let texels = (8 * random.below(4)) as f64 + part;
-                Query { row: i % 4, texels: texels as f32, depth: 0.5, optical_step }
+                Query {
+                    row: i % 4,
+                    texels: texels as f32,
+                    depth: 0.5,
+                    optical_step,
+                    least_step: optical_step,
+                }
             })
             .collect();
         let a = f64::from(optical_step);
@@ -298,7 +225,7 @@ fn air_that_is_opaque_within_a_texel_gives_a_visibility() {
             let optical_step = structure.build_weighted(&rows, optical_step);
             let mut queries = queries(&mut random, &rows, 12, 500);
             for query in &mut queries {
-                query.optical_step = optical_step;
+                (query.optical_step, query.least_step) = (optical_step, optical_step);
             }
             for (query, found) in queries.iter().zip(structure.ask(&queries)) {
                 assert!((0.0..=1.0).contains(&found), "{width}, {query:?}: {found}");
@@ -366,9 +293,8 @@ fn pictures_mix_the_rows_about_a_ray_around_the_seam_too() {
 /// A scene of the gallery and the exact visibilities of its pixels.
 struct Case {
     stage: Stage,
-    /// Plain means, those weighted by the ray's own transmittance, and those by that of the reference ray; over the
-    /// nearest row and between two rows.
-    exact: [[Vec<f64>; 3]; 2],
+    /// Plain means and those weighted by the ray's own transmittance; over the nearest row and between two rows.
+    exact: [[Vec<f64>; 2]; 2],
 }
 
 impl Case {
@@ -386,15 +312,11 @@ impl Case {
         gpu().submit(encoder).unwrap();
         let rectified = map.rectified.read(gpu()).unwrap();
         let extinction = f64::from(stage.medium.extinction);
-        let pixels = gpu::of_pixels(&stage, &view, &map, |rectification, ray| -> [[f64; 3]; 2] {
-            let at = |j: usize| -> [f64; 3] {
+        let pixels = gpu::of_pixels(&stage, &view, &map, |rectification, ray| -> [[f64; 2]; 2] {
+            let at = |j: usize| -> [f64; 2] {
                 let row = &rectified[j * rectification.width..(j + 1) * rectification.width];
-                let end = ray.end(rectification, j, extinction);
-                let own = reference::row_visibility(row, end);
-                let slice = &rectification.slices[j];
-                let optical = extinction * slice.texel(rectification.width) / slice.k();
-                let common = reference::row_visibility(row, reference::RowEnd { optical, ..end });
-                [own.average, own.weighted, common.weighted]
+                let own = reference::row_visibility(row, ray.end(rectification, j, extinction));
+                [own.average, own.weighted]
             };
             let [a, b] = ray.rows.map(at);
             let mixed = std::array::from_fn(|i| a[i] * (1.0 - ray.share) + b[i] * ray.share);
@@ -427,29 +349,27 @@ fn pictures_reach_their_figures() {
         for (filtering, rows) in [(Filtering::Nearest, 0), (Filtering::Linear, 1)] {
             for weighting in [Weighting::Average, Weighting::Transmittance] {
                 let weighted = weighting == Weighting::Transmittance;
+                let exact = &case.exact[rows][usize::from(weighted)];
                 let measure = |visibility: Visibility| {
                     let settings = Settings { visibility, filtering, weighting, ..Settings::default() };
                     let found = case.visibility(settings);
-                    let exact = &case.exact[rows];
-                    let [own, common] = if weighted { [1, 2] } else { [0, 0] }
-                        .map(|which| error::mean_absolute(&found, &exact[which]));
+                    let mean = error::mean_absolute(&found, exact);
                     println!(
-                        "{name}, {filtering:?}, {}, {visibility:?}: mean {own:.5}, greatest {:.3}; with the weights of \
-                         the reference ray {common:.5}",
+                        "{name}, {filtering:?}, {}, {visibility:?}: mean {mean:.5}, greatest {:.3}",
                         gpu::weighting_name(weighting),
-                        error::max_absolute(&found, &exact[usize::from(weighted)])
+                        error::max_absolute(&found, exact)
                     );
-                    (own, common)
+                    mean
                 };
-                let (fourier, _) = measure(Visibility::Fourier);
+                let fourier = measure(Visibility::Fourier);
                 measure(Visibility::Rank { bits: 10 });
-                let (own, common) = measure(Visibility::Rank { bits: 12 });
+                let rank = measure(Visibility::Rank { bits: 12 });
                 let what = format!("{name}, {filtering:?}, {}", gpu::weighting_name(weighting));
-                if weighted && (common.is_nan() || common > 5e-4) {
-                    failures.push(format!("{what}: {common:.5} of at most 0.0005"));
+                if weighted && (rank.is_nan() || rank > 5e-4) {
+                    failures.push(format!("{what}: {rank:.5} of at most 0.0005"));
                 }
-                if !weighted && (own.is_nan() || own > 0.2 * fourier) {
-                    failures.push(format!("{what}: {own:.5}, over a fifth of {fourier:.5}"));
+                if rank.is_nan() || rank > 0.2 * fourier {
+                    failures.push(format!("{what}: {rank:.5}, over a fifth of {fourier:.5}"));
                 }
             }
         }
@@ -479,17 +399,28 @@ fn what_ranks_cannot_do_is_refused() {
     let needs = |what: &str| format!("the method `rank` needs {what}; `fourier` does without");
     assert_eq!(refusal(Settings { map: [2049, 16], ..rank }), needs("maps of at most 2048 columns"));
     assert_eq!(refusal(Settings { regions: 2, ..rank }), needs("rows in one region"));
+    assert!(refusal(Settings { map: [0, 16], ..rank }).contains("0x16 is impossible"));
+    let map = ProjectiveMap::drawn(gpu(), [64, 16]).unwrap();
+    let parts = Settings { regions: 3, ..rank };
+    match ProjectivePrefiltered::new(gpu(), shaders(), map, parts, [16, 16]) {
+        Err(error) => assert_eq!(error.to_string(), needs("rows in one region")),
+        Ok(_) => panic!("regions are taken"),
+    }
+    // What ranks can do and moments cannot.
+    let moments = Settings { visibility: Visibility::Moments, ..rank };
+    let needs = |what: &str| format!("the method `moments` needs {what}; `fourier` does without");
     let spot = LightForm { spot: true, ..LightForm::default() };
     let texture = LightForm { texture: true, ..LightForm::default() };
     for light in [spot, texture] {
-        assert_eq!(refusal(Settings { light, ..rank }), needs("a plain directional light"));
+        assert_eq!(refusal(Settings { light, ..moments }), needs("a plain directional light"));
+        assert!(Prefiltered::new(gpu(), shaders(), Settings { light, ..rank }, [16, 16]).is_ok());
     }
-    assert!(refusal(Settings { map: [0, 16], ..rank }).contains("0x16 is impossible"));
-    let map = ProjectiveMap::drawn(gpu(), [64, 16]).unwrap();
-    match ProjectivePrefiltered::new(gpu(), shaders(), map, rank, [16, 16]) {
+    let map = || ProjectiveMap::drawn(gpu(), [64, 16]).unwrap();
+    match ProjectivePrefiltered::new(gpu(), shaders(), map(), moments, [16, 16]) {
         Err(error) => assert_eq!(error.to_string(), needs("epipolar rows")),
         Ok(_) => panic!("projective rows are taken"),
     }
+    assert!(ProjectivePrefiltered::new(gpu(), shaders(), map(), rank, [16, 16]).is_ok());
     // What lies at the bounds is taken.
     for (bits, map) in [(8, [2048, 1]), (12, [1, 16]), (9, [5, 5]), (11, [40, 3])] {
         let settings = Settings { visibility: Visibility::Rank { bits }, map, ..rank };

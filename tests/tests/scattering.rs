@@ -642,10 +642,12 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     let plain = Settings { window: false, epipole_march: false, weighting: Weighting::Average, ..defaults };
     let rank = Settings { visibility: Visibility::Rank { bits: 12 }, ..defaults };
     let moments = Settings { visibility: Visibility::Moments, ..defaults };
+    let wavelet = Visibility::Wavelet { bits: 12 };
+    let wavelet = Settings { visibility: wavelet, weighting: Weighting::Average, ..defaults };
     // Cases take turns: with everything and along rows, plain and through the shadow map; then the other methods.
-    let methods = [defaults, plain, rank, moments]
+    let methods = [defaults, plain, rank, moments, wavelet]
         .map(|settings| Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap());
-    let bound = [0, 1, 2, 3].map(|i| methods[i].bind(gpu(), &inputs).unwrap());
+    let bound = [0, 1, 2, 3, 4].map(|i| methods[i].bind(gpu(), &inputs).unwrap());
     let alongs = [Along::Rows(&methods[0].rectification), Along::ShadowMap { steps: 24 }];
     let marches = [0, 1].map(|i| {
         let march = March::new(gpu(), shaders(), &alongs[i], Weighting::Transmittance, PICTURE).unwrap();
@@ -654,10 +656,10 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     });
     // Every picture of a batch in one buffer: rows are padded to 256 bytes.
     const ROW: usize = 256;
-    let pictures = [0, 1, 2, 3].map(|i| {
+    let pictures = [0, 1, 2, 3, 4].map(|i| {
         let (method, map) = (&methods[i], &methods[i].rectification);
         let mut all = vec![&method.scattered, &marches[i % 2].0.scattered, &map.rectified, &map.slices];
-        // What rank queries and moments store has tests of its own.
+        // What the other methods store has tests of its own.
         all.extend((i < 2).then(|| method.prefilter.stored()));
         all
     });
@@ -677,11 +679,11 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
             depth.write(gpu(), &wild_depths(&mut random, PIXELS, case.camera.far_depth)).unwrap();
             shadow_map.write(gpu(), &wild_depths(&mut random, 64, case.light.far_depth)).unwrap();
             let mut encoder = gpu().encoder();
-            methods[index % 4].record(&mut encoder, &bound[index % 4]);
-            let (march, march_bound) = &marches[index % 2];
+            methods[index % 5].record(&mut encoder, &bound[index % 5]);
+            let (march, march_bound) = &marches[index % 5 % 2];
             march.record(&mut encoder, march_bound);
             let mut offset = index * stride;
-            for texture in &pictures[index % 4] {
+            for texture in &pictures[index % 5] {
                 encoder.copy_texture_to_buffer(
                     texture.raw.as_image_copy(),
                     wgpu::TexelCopyBufferInfo {
@@ -711,7 +713,7 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
                 )
             };
             let mut offset = 0;
-            for (which, texture) in pictures[index % 4].iter().enumerate() {
+            for (which, texture) in pictures[index % 5].iter().enumerate() {
                 let rows = height(texture);
                 let columns = texture.size()[0] as usize;
                 for (y, x) in (0..rows).flat_map(|y| (0..columns).map(move |x| (y, x))) {

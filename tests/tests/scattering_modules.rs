@@ -6,18 +6,15 @@
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/probing.rs"]
+mod probing;
 
 use airlight_tests::linear::Vec3;
 use airlight_tests::reference::phase::henyey_greenstein;
 use airlight_tests::reference::scattering::Airlight;
 use gpu::{Probe, Random};
+use probing::hold;
 use std::f64::consts::PI;
-
-/// Prints and holds a measured error.
-fn hold(what: &str, error: f64, budget: f64) {
-    println!("{what}: {error:.2e} of at most {budget:.1e}");
-    assert!(error <= budget, "{what}: {error:e} exceeds {budget:e}");
-}
 
 fn worst(errors: impl Iterator<Item = f64>) -> f64 {
     errors.fold(0.0, |a, b| if b <= a { a } else { b })

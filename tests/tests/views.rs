@@ -42,9 +42,13 @@ fn views_of_one_call_are_those_of_their_own() {
     }));
     // The other ways to prefilter visibility, at full and at half the resolution.
     let others = views.len();
-    for visibility in [Visibility::Rank { bits: 12 }, Visibility::Moments] {
+    for (visibility, weighting) in [
+        (Visibility::Rank { bits: 12 }, Weighting::Transmittance),
+        (Visibility::Moments, Weighting::Transmittance),
+        (Visibility::Wavelet { bits: 12 }, Weighting::Average),
+    ] {
         for resolution in [None, Some(Resolution::Half)] {
-            let method = Method::Epipolar(Settings { visibility, ..settings });
+            let method = Method::Epipolar(Settings { visibility, weighting, ..settings });
             views.push(ViewSettings { camera, resolution, method });
         }
     }

@@ -5,15 +5,19 @@
 // note: Unlike algorithm modules a callback holds bindings, those that passes share. All methods answer the same question:
 // note: which share of the first texels of a row is lit at the depth of a ray.
 // definition RANK: rank queries, bits of a depth as in the pass `rank`; Fourier bases without RANK and MOMENTS.
+// definition WAVELET: by a wavelet matrix, as of the pass `wavelet`; with RANK, an even number, and AVERAGE.
 // definition MOMENTS: six moments.
 // definition AVERAGE: what was stored holds plain means.
 // definition BASES: number M of Fourier bases, as in the filter.
-// definition COLORS: colours of the light, as in the filter; Fourier bases only.
+// definition WEIGHT_BITS: bits of a weight, as in the pass `rank_weights`; with RANK, where columns have weights of their own.
+// definition COLORS: colours of the light, as in the filter; Fourier bases, or RANK and WEIGHT_BITS.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition NEAREST: the nearest row, and the nearest texel of what was stored, instead of a bilinear blend; no sampler.
-// binding rank_cells: what `rank` makes, rg32uint; with RANK only.
-// binding rank_starts: the same, r32uint; with RANK only.
-// binding rank_planes: the same, rgba32uint; with RANK only.
+// binding wavelet: what `wavelet` makes, rgba32uint; with WAVELET only.
+// binding rank_cells: what `rank` makes, rg32uint, or `rank_weights`, with LIGHT_TEXTURE rgba32uint; with RANK only, without WAVELET; so the next two.
+// binding rank_starts: the same, r32uint.
+// binding rank_planes: the same, rgba32uint.
+// binding rank_weights: what `rank_weights` makes, rgba32uint; with RANK and WEIGHT_BITS only.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
 // binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
 // binding bases: what `filter` makes, rgba8unorm or rgba16float; without RANK and MOMENTS.
@@ -25,13 +29,28 @@
 }
 #import airlight::scattering::visibility_moments::{moments_visibility, moments_visibility_nearest}
 #import airlight::scattering::visibility_rank::{rank_visibility, rank_visibility_weighted}
+#import airlight::scattering::visibility_rank_weights::rank_means
+#import airlight::scattering::visibility_wavelet::wavelet_visibility
 
 #ifdef RANK
+#ifdef WAVELET
+@group(#{GROUP}) @binding(7) var wavelet: texture_2d<u32>;
+#else
 @group(#{GROUP}) @binding(7) var rank_cells: texture_2d<u32>;
 @group(#{GROUP}) @binding(8) var rank_starts: texture_2d<u32>;
 @group(#{GROUP}) @binding(13) var rank_planes: texture_2d_array<u32>;
+#endif
 @group(#{GROUP}) @binding(14) var rectified: texture_2d<f32>;
 const RANK_BITS: u32 = u32(#{RANK});
+#ifdef WEIGHT_BITS
+@group(#{GROUP}) @binding(15) var rank_weights: texture_2d_array<u32>;
+const BITS_OF_WEIGHTS: u32 = u32(#{WEIGHT_BITS});
+#ifdef COLORS
+const RANK_COLORS: u32 = u32(#{COLORS});
+#else
+const RANK_COLORS: u32 = 0u;
+#endif
+#endif
 #else ifdef MOMENTS
 @group(#{GROUP}) @binding(7) var moments: texture_2d<u32>;
 #else
@@ -61,8 +80,10 @@ struct Prefix {
     first: f32,
     /// Where the stretch ends, texels from the start of the row, fractional.
     texels: f32,
-    /// Optical depth of a texel by which what was stored is weighted; 0 for plain means.
+    /// Optical depth of a texel of the ray; 0 for plain means.
     optical_step: f32,
+    /// By which what was stored is weighted: that of the reference ray, with RANK the least of the row.
+    stored_step: f32,
 }
 
 /// Columns and rows of the rectified map.
@@ -85,30 +106,52 @@ fn prefix_row(at: Prefix) -> u32 {
 }
 
 #ifdef RANK
-/// Mean visibility of the stretch in a whole `row`, 0..1.
-fn row_visibility(at: Prefix, row: u32, depth: f32) -> f32 {
+/// What the stretch in a whole `row` gives, 0..1: the mean visibility, or with COLORS that times fall-off, for each colour.
+fn row_means(at: Prefix, row: u32, depth: f32) -> vec3<f32> {
     let columns = map_size().x;
-#ifdef AVERAGE
-    return rank_visibility(rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth);
-#else
-    return rank_visibility_weighted(
-        rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth, at.optical_step
+#ifdef WAVELET
+    return vec3<f32>(wavelet_visibility(wavelet, RANK_BITS, columns, row, at.texels, depth));
+#else ifdef WEIGHT_BITS
+    return rank_means(
+        rank_cells, rank_starts, rank_planes, rank_weights, RANK_BITS, BITS_OF_WEIGHTS, RANK_COLORS, columns, row,
+        at.texels, depth
     );
+#else ifdef AVERAGE
+    return vec3<f32>(
+        rank_visibility(rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth)
+    );
+#else
+    return vec3<f32>(rank_visibility_weighted(
+        rank_cells, rank_starts, rank_planes, RANK_BITS, columns, row, at.texels, depth, at.optical_step,
+        at.stored_step
+    ));
 #endif
 }
 
-/// Mean visibility of a stretch at the depth of a ray, 0..1.
-fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
+/// The means of the nearest row, or of the two about the stretch.
+fn mixed_means(at: Prefix, depth: f32) -> vec3<f32> {
 #ifdef NEAREST
-    return row_visibility(at, prefix_row(at), depth);
+    return row_means(at, prefix_row(at), depth);
 #else
     let rows = map_size().y;
     let whole = min(u32(max(at.row, 0.0)), rows - 1u);
     let next = select(min(whole + 1u, rows - 1u), 0u, whole + 1u >= rows && at.wraps > 0.0);
     let share = clamp(at.row - f32(whole), 0.0, 1.0);
-    return mix(row_visibility(at, whole, depth), row_visibility(at, next, depth), share);
+    return mix(row_means(at, whole, depth), row_means(at, next, depth), share);
 #endif
 }
+
+#ifdef COLORS
+/// Mean of visibility times fall-off of a stretch at the depth of a ray, for each colour.
+fn prefix_colors(at: Prefix, depth: f32) -> vec3<f32> {
+    return mixed_means(at, depth);
+}
+#else
+/// Mean visibility of a stretch at the depth of a ray, 0..1.
+fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
+    return mixed_means(at, depth).x;
+}
+#endif
 #else ifdef MOMENTS
 /// Mean visibility of a stretch at the depth of a ray, 0..1.
 fn prefix_visibility(at: Prefix, depth: f32) -> f32 {

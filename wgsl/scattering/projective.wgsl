@@ -184,6 +184,17 @@ fn stretch_weight(extinction: f32, metres: f32) -> f32 {
     return select(one_minus_exp(depth) / max(extinction, 1e-30), metres * (1.0 - 0.5 * depth), depth < 1e-4);
 }
 
+/// Texels before `x` metres of X, and of the texel in which it lies the share of its weight: what a mean over whole
+/// columns, of which the last counts in part, takes. Between two edges weight does not grow with the column. `reach`: of
+/// the reference ray; `extinction` in 1/m, 0 for plain means.
+fn weighed_column(rows: ProjectiveRows, width: f32, reach: f32, extinction: f32, x: f32) -> f32 {
+    let column = u32(clamp(column_from_x(rows, width, x), 0.0, width - 1.0));
+    let begin = texel_begin(rows, width, column);
+    let whole = stretch_weight(extinction, max(texel_end(rows, width, column) - begin, 0.0) * reach);
+    let here = stretch_weight(extinction, max(x - begin, 0.0) * reach);
+    return f32(column) + clamp(here / max(whole, 1e-37), 0.0, 1.0);
+}
+
 /// Column between whose neighbours filtered bases are interpolated linearly for a ray that ends at `x` metres of X.
 /// Texel i holds the mean from the left edge of texel `first`, where its region begins, up to the right edge of texel i;
 /// between two edges the weighted sum grows with the weight and not with the column, so that the share of the next

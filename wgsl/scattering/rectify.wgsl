@@ -215,6 +215,13 @@ fn reference_bisectrix(angle_min: f32, angle_max: f32) -> f32 {
     return max(sin(0.5 * (widest + narrowest)), LEAST_REFERENCE);
 }
 
+/// Greatest sine of an angle to the light between the bounds of a slice, within 2 %.
+fn greatest_sine(slice: Slice) -> f32 {
+    let off = max(max(slice.angle_min - 0.5 * PI, 0.5 * PI - slice.angle_max), 0.0);
+    let square = min(off * off, 0.25 * PI * PI);
+    return 1.0 - square * (0.5 - square / 24.0);
+}
+
 /// A slice as one texel of an rgba32float texture.
 fn slice_texel(slice: Slice) -> vec4<f32> {
     return vec4<f32>(slice.angle_min, slice.angle_max, slice.radius_max, slice.reference);

@@ -15,13 +15,14 @@
 // note: 3.5 (1 - e^-(a m)) for the columns before the middle and too much by at most 4 (1 - e^-(a m)) for those behind it,
 // note: a the optical depth of a texel; over m columns of the block at most 4 e^-t (1 - e^-(a m)). All is at most
 // note: 8 (1 - e^-(t + a m)), and the row's weight (1 - e^-(t + a m)) / (1 - e^-a) or more, so that visibility errs by at
-// note: most 8 (1 - e^-a); on average by a thirtieth of it. Storing weights with 16 bits adds at most columns 2^-17 over
-// note: the row's weight.
+// note: most 8 (1 - e^-a); on average by a thirtieth of it.
+// note: Rays of a row differ in the optical depth of a texel, so the base is stored for two such depths, as shares of the
+// note: weight left of the block, and interpolated for each ray. With u the optical depth of the ray left of the block and
+// note: u0, u1 = 2 u0 those of the stored ones that errs by at most |u - u0| |u - u1| / 62. The lesser one is that of the
+// note: ray that crosses texels fastest, at right angles to the light where the row has such a ray.
 
-#import airlight::core::prefix_sum::prefix_weight
+#import airlight::core::prefix_sum::one_minus_exp
 
-/// Steps of a stored weight.
-const WEIGHT_STEPS: f32 = 65535.0;
 /// Least stretch that is asked for, texels: shorter ones see their texel.
 const LEAST_TEXELS: f32 = 1e-3;
 
@@ -97,33 +98,44 @@ fn rank_visibility(
     return clamp(1.0 - dark / at.covered, 0.0, 1.0);
 }
 
-/// Like `rank_visibility`, weighted by transmittance. `optical_step`: optical depth of one texel of the reference ray.
+/// Like `rank_visibility`, weighted by transmittance. Optical depths of one texel, `optical_step`: of the ray;
+/// `least_step`: that by which the structure was built, and twice of which.
 fn rank_visibility_weighted(
     cells: texture_2d<u32>, starts: texture_2d<u32>, planes: texture_2d_array<u32>, bits: u32, columns: u32,
-    row: u32, texels: f32, depth: f32, optical_step: f32
+    row: u32, texels: f32, depth: f32, optical_step: f32, least_step: f32
 ) -> f32 {
     let at = rank_place(starts, planes, bits, columns, row, texels, depth);
     let blocks = (columns + 31u) / 32u;
     let cell = textureLoad(cells, vec2<u32>(at.cell, row), 0).xy;
     let block_begin = f32(at.column & ~31u);
-    let before = prefix_weight(optical_step, block_begin);
+    // Where the ray lies between the two steps; beyond both where it is thin or oblique, but there rows are short.
+    let least = max(least_step, 1e-30);
+    let between = min((optical_step - least) / least, 64.0);
+    let stored = unpack2x16unorm(cell.y);
+    let base = mix(stored.x, stored.y, between);
     // Where the next chunk begins, all ranks of this one are counted; after the last chunk all ranks are.
     let next = at.cell + blocks;
-    let stored = f32(textureLoad(cells, vec2<u32>(min(next, blocks * blocks - 1u), row), 0).y) / WEIGHT_STEPS;
-    let base = f32(cell.y) / WEIGHT_STEPS;
-    let chunk = max(select(before, stored, next < blocks * blocks) - base, 0.0);
+    let after = unpack2x16unorm(textureLoad(cells, vec2<u32>(min(next, blocks * blocks - 1u), row), 0).y);
+    let chunk = max(select(1.0, mix(after.x, after.y, between), next < blocks * blocks) - base, 0.0);
     let meant = f32(countOneBits(cell.x & low_bits(at.ranks)));
-    let ranks = base + chunk * meant / max(f32(countOneBits(cell.x)), 1.0);
+    let share = base + chunk * meant / max(f32(countOneBits(cell.x)), 1.0);
+    // Weights are in units of the integral of transmittance over 1 / extinction, so that none is divided.
+    let thickness = max(optical_step, 1e-30);
+    let texel = one_minus_exp(thickness);
+    let left = one_minus_exp(thickness * block_begin);
+    let whole = one_minus_exp(thickness * f32(at.column));
+    let covered = one_minus_exp(thickness * at.covered);
     // Eight columns at a time share a weight.
     let inside = at.column & 31u;
     let dark = at.less & low_bits(inside);
-    let eighth = exp(-8.0 * optical_step);
+    let through = 1.0 - texel;
+    let square = through * through;
+    let eighth = square * square * square * square;
     var columns_dark = f32(countOneBits(dark >> 24u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xff0000u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xff00u));
     columns_dark = columns_dark * eighth + f32(countOneBits(dark & 0xffu));
-    let first = exp(-optical_step * block_begin);
-    let last = prefix_weight(optical_step, at.part) * exp(-optical_step * f32(inside));
-    let inner = columns_dark * exp(-3.5 * optical_step) + select(0.0, last, ((at.less >> inside) & 1u) != 0u);
-    return clamp(1.0 - (ranks + first * inner) / prefix_weight(optical_step, at.covered), 0.0, 1.0);
+    let block = (1.0 - left) * texel * columns_dark * square * through * sqrt(through);
+    let last = select(0.0, max(covered - whole, 0.0), ((at.less >> inside) & 1u) != 0u);
+    return clamp(1.0 - (clamp(share, 0.0, 1.0) * left + block + last) / covered, 0.0, 1.0);
 }

@@ -2,8 +2,8 @@
 //! Airlight's WGSL as text, without dependencies.
 //!
 //! A shader is three things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
-//! and constants: no bindings, no entry points. A *callback* (`lit` and `prefiltered`, among the
-//! modules) holds bindings that several passes share behind functions, for an engine to replace. A
+//! and constants: no bindings, no entry points. A *callback* (`lit`, `prefiltered`,
+//! `column_weights` and `rank_sort`, among the modules) holds bindings that several passes share behind functions, for an engine to replace. A
 //! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
 //!
@@ -104,6 +104,13 @@ modules! {
     scattering::shadow_lookup ["core::finite", "core::light", "core::shadow_views"],
     scattering::visibility_fourier ["core::fourier_basis"],
     scattering::visibility_rank ["core::prefix_sum"],
+    scattering::visibility_rank_weights ["scattering::visibility_rank"],
+    scattering::visibility_wavelet ["scattering::visibility_rank"],
+    scattering::rank_sort ["core::finite", "scattering::visibility_rank"],
+    scattering::column_weights [
+        "core::light", "scattering::local_light", "scattering::projective", "scattering::rectify",
+        "scattering::single_scatter"
+    ],
     scattering::visibility_moments ["core::fourier_basis"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
     scattering::upsample [],
@@ -113,7 +120,7 @@ modules! {
     ],
     scattering::prefiltered [
         "scattering::rows", "scattering::visibility_fourier", "scattering::visibility_moments",
-        "scattering::visibility_rank"
+        "scattering::visibility_rank", "scattering::visibility_rank_weights", "scattering::visibility_wavelet"
     ],
     stylize::morphology [],
     stylize::epipolar_dilate ["core::finite"],
@@ -131,6 +138,8 @@ passes! {
     scattering/filter,
     scattering/filter_moments,
     scattering/rank,
+    scattering/wavelet,
+    scattering/rank_weights,
     scattering/evaluate,
     scattering/evaluate_projective,
     scattering/evaluate_local,

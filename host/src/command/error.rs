@@ -97,8 +97,8 @@ impl From<crate::scattering::SettingsError> for CommandError {
         use crate::scattering::SettingsError as E;
         let flag = match &error {
             E::Bases(_) | E::BasesPerThread(_) => "--bases",
-            E::RankBits(_) => "--bits",
-            E::Visibility { .. } => "--method",
+            E::RankBits(_) | E::WaveletBits(_) => "--bits",
+            E::Visibility { .. } | E::WaveletWeighting => "--method",
             E::Regions(_) => "--regions",
             E::OrthographicStart => "--start",
             E::LightForm(_) | E::LightAtEye { .. } => "--light",

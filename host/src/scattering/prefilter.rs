@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What a filter stores of every row, and the pass that does it: the part that methods differ in.
 
-use super::{BasisFormat, LightForm, Settings, SettingsError, Weighting};
+use super::{BasisFormat, Settings, SettingsError, Weighting};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, PassError, Resource};
 use crate::resource::{Sampler, Texture};
@@ -17,19 +17,23 @@ pub enum Visibility {
     Fourier,
     /// Six moments: the least memory of the soft ones; a plain directional light over epipolar rows.
     Moments,
-    /// Rank queries: exact for depths of so many bits, 8 to 12; a plain directional light over epipolar rows.
+    /// Rank queries: exact for depths of so many bits, 8 to 12; any light, any rows of at most 2048 columns in one region.
     Rank {
         /// Bits of a depth.
+        bits: u32,
+    },
+    /// A wavelet matrix: exact as rank queries of the same 8, 10 or 12 bits, in about a fifth of their memory, for plain
+    /// means ([`Weighting::Average`]) only; more reads.
+    Wavelet {
+        /// Bits of a depth, an even number.
         bits: u32,
     },
 }
 
 impl Visibility {
-    /// What is best for epipolar rows of a light in a map of `columns`: rank queries where they can be asked, else
-    /// Fourier bases.
-    pub fn automatic(light: &LightForm, columns: u32) -> Self {
-        let plain = light.colors().is_none() && !light.local();
-        if plain && columns <= RANK_COLUMNS { Self::Rank { bits: RANK_BITS } } else { Self::Fourier }
+    /// What is best for a map of `columns`: rank queries where they can be asked, else Fourier bases.
+    pub fn automatic(columns: u32) -> Self {
+        if columns <= RANK_COLUMNS { Self::Rank { bits: RANK_BITS } } else { Self::Fourier }
     }
 
     /// Its name at the command.
@@ -38,6 +42,7 @@ impl Visibility {
             Self::Fourier => "fourier",
             Self::Moments => "moments",
             Self::Rank { .. } => "rank",
+            Self::Wavelet { .. } => "wavelet",
         }
     }
 }
@@ -54,13 +59,22 @@ impl Settings {
             return Ok(());
         }
         let method = self.visibility.name();
-        if self.light.colors().is_some() || self.light.local() {
+        let moments = self.visibility == Visibility::Moments;
+        if moments && (self.light.colors().is_some() || self.light.local()) {
             return Err(SettingsError::Visibility { method, reason: "a plain directional light" });
         }
         if self.regions > 1 {
             return Err(SettingsError::Visibility { method, reason: "rows in one region" });
         }
-        if let Visibility::Rank { bits } = self.visibility {
+        if let Visibility::Wavelet { bits } = self.visibility {
+            if !matches!(bits, 8 | 10 | 12) {
+                return Err(SettingsError::WaveletBits(bits));
+            }
+            if self.weighting != Weighting::Average {
+                return Err(SettingsError::WaveletWeighting);
+            }
+        }
+        if let Visibility::Rank { bits } | Visibility::Wavelet { bits } = self.visibility {
             if !(8..=12).contains(&bits) {
                 return Err(SettingsError::RankBits(bits));
             }
@@ -81,13 +95,41 @@ impl Settings {
                 definitions.set("BASES", self.bases as i32)
             }
             Visibility::Moments => definitions.flag("MOMENTS"),
-            Visibility::Rank { bits } => definitions.set("RANK", bits as i32),
+            Visibility::Wavelet { bits } => definitions.set("RANK", bits as i32).flag("WAVELET"),
+            Visibility::Rank { bits } => {
+                let definitions = definitions.set("RANK", bits as i32);
+                self.weight_definitions(definitions, self.weight_bits(false))
+            }
+        }
+    }
+
+    /// Bits in which a rank structure stores the weights of columns, where these have weights of their own. Those of
+    /// `projective` rows span far more than those of a light's fall-off.
+    pub(super) fn weight_bits(&self, projective: bool) -> Option<u32> {
+        match self.visibility {
+            Visibility::Rank { .. } if projective => Some(16),
+            Visibility::Rank { .. } if self.light.local() || self.light.texture => Some(8),
+            _ => None,
+        }
+    }
+
+    pub(super) fn weight_definitions(&self, definitions: Definitions, bits: Option<u32>) -> Definitions {
+        match bits {
+            Some(bits) => definitions.set("WEIGHT_BITS", bits as i32),
+            None => definitions,
         }
     }
 
     fn average(&self, definitions: Definitions) -> Definitions {
         if self.weighting == Weighting::Average { definitions.flag("AVERAGE") } else { definitions }
     }
+}
+
+/// Layers of the weights of a rank structure: three of steps and sums, then the planes of the columns of each channel and
+/// of the ranks of each colour.
+fn weight_layers(colors: Option<u32>, weight_bits: u32) -> u32 {
+    let channels = colors.map_or(1, |colors| colors + 1);
+    3 + (channels + colors.unwrap_or(1)) * weight_bits / 4
 }
 
 /// The filter of a rectified map.
@@ -132,13 +174,34 @@ impl Prefilter {
                 let definitions = settings.average(Definitions::new()).set("RANK", bits as i32);
                 let blocks = width.div_ceil(32);
                 let planes = [blocks, height, bits.div_ceil(4)];
+                let weight_bits = settings.weight_bits(projective);
+                let three = settings.light.colors() == Some(3);
+                let cells = if three { TextureFormat::Rgba32Uint } else { TextureFormat::Rg32Uint };
+                let mut textures = vec![
+                    ("rank_cells", flat([blocks * blocks, height], cells)),
+                    ("rank_starts", flat([1 << (bits - 1), height], TextureFormat::R32Uint)),
+                    ("rank_planes", Texture::array(gpu, planes, TextureFormat::Rgba32Uint, usage)),
+                ];
+                let pass = if let Some(weight_bits) = weight_bits {
+                    let definitions = settings.weight_definitions(definitions, Some(weight_bits));
+                    let definitions = if projective { definitions.flag("PROJECTIVE") } else { definitions };
+                    let definitions = settings.light.local_definitions(definitions);
+                    let definitions = settings.light.color_definitions(definitions);
+                    let layers = weight_layers(settings.light.colors(), weight_bits);
+                    let size = [blocks, height, layers];
+                    let weights = Texture::array(gpu, size, TextureFormat::Rgba32Uint, usage);
+                    textures.push(("rank_weights", weights));
+                    compute("scattering/rank_weights", definitions)?
+                } else {
+                    compute("scattering/rank", definitions)?
+                };
+                (pass, textures, [64 * height, 1, 1])
+            }
+            Visibility::Wavelet { bits } => {
+                let size = [bits / 2 * width.div_ceil(32), height];
                 (
-                    compute("scattering/rank", definitions)?,
-                    vec![
-                        ("rank_cells", flat([blocks * blocks, height], TextureFormat::Rg32Uint)),
-                        ("rank_starts", flat([1 << (bits - 1), height], TextureFormat::R32Uint)),
-                        ("rank_planes", Texture::array(gpu, planes, TextureFormat::Rgba32Uint, usage)),
-                    ],
+                    compute("scattering/wavelet", Definitions::new().set("RANK", bits as i32))?,
+                    vec![("wavelet", flat(size, TextureFormat::Rgba32Uint))],
                     [64 * height, 1, 1],
                 )
             }
@@ -163,7 +226,7 @@ impl Prefilter {
     }
 
     /// The texture that the others go with: filtered bases, M/4 layers (with a fall-off those of each colour, and one of
-    /// the mean fall-off), moments, or cells.
+    /// the mean fall-off), moments, cells, or the wavelet matrix.
     pub fn stored(&self) -> &Texture {
         &self.textures[0].1
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Light shafts by prefiltered bases over a projectively rectified map (thesis 4.3 and 4.4.2).
+//! Light shafts by prefiltered visibility over a projectively rectified map (thesis 4.3 and 4.4.2).
 
 use super::{
     Inputs, Prefilter, Projective, ProjectiveMap, ScatteringError, Settings, SettingsError, Start,
@@ -11,7 +11,7 @@ use crate::resource::Texture;
 use crate::shaders::Shaders;
 use wgpu::TextureFormat;
 
-/// Light shafts by prefiltered bases over a projective map.
+/// Light shafts by prefiltered visibility over a projective map.
 pub struct ProjectivePrefiltered {
     settings: Settings,
     /// The map that is filtered; [`Self::write`] takes its rows. A map that is drawn is drawn before
@@ -48,7 +48,7 @@ impl ProjectivePrefiltered {
         let settings = Settings { map: [width, height], ..settings };
         settings.validate(gpu)?;
         check_size(gpu, "a picture", viewport)?;
-        if settings.visibility != Visibility::Fourier {
+        if settings.visibility == Visibility::Moments {
             let method = settings.visibility.name();
             return Err(SettingsError::Visibility { method, reason: "epipolar rows" }.into());
         }

@@ -20,6 +20,12 @@ pub enum SettingsError {
     /// Bits of a depth in a rank structure.
     #[error("{0} bits a depth are impossible: the number must be from 8 to 12")]
     RankBits(u32),
+    /// Bits of a depth in a wavelet matrix.
+    #[error("{0} bits a depth are impossible in a wavelet matrix: the number must be 8, 10 or 12")]
+    WaveletBits(u32),
+    /// A wavelet matrix weighted by transmittance.
+    #[error("the method `wavelet` counts texels alike: take the weighting `Average`, or the method `rank`")]
+    WaveletWeighting,
     /// What a method of prefiltering cannot do.
     #[error("the method `{method}` needs {reason}; `fourier` does without")]
     Visibility {
@@ -262,7 +268,8 @@ impl Settings {
 
     /// Of the pass `evaluate_projective`, which knows no epipole.
     pub(super) fn projective_definitions(&self) -> Definitions {
-        Self { epipole_march: false, depth_warp: false, ..*self }.evaluate_definitions()
+        let definitions = Self { epipole_march: false, depth_warp: false, ..*self }.evaluate_definitions();
+        self.weight_definitions(definitions, self.weight_bits(true))
     }
 
     fn with_regions(&self, definitions: Definitions) -> Definitions {

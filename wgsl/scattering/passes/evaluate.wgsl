@@ -6,7 +6,9 @@
 // note: would bleed through blockers: EPIPOLE_MARCH marches the standard shadow map wherever a ray covers few
 // note: texels, very short rays included, blended in without a seam.
 // definition BASES: number M of bases, as in the filter; without RANK and MOMENTS.
-// definition RANK: exact visibility by rank queries, bits of a depth as in `rank`. Not with COLORS or REGIONS.
+// definition RANK: exact visibility by rank queries, bits of a depth as in `rank`. Not with REGIONS.
+// definition WEIGHT_BITS: bits of a weight, as in `rank_weights`; with RANK and COLORS.
+// definition WAVELET: by the wavelet matrix of `wavelet`; with RANK and AVERAGE.
 // definition MOMENTS: visibility from what `filter_moments` stores. Not with COLORS or REGIONS.
 // definition COLORS: 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
 // definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
@@ -31,9 +33,11 @@
 // binding light_texture: linear RGB 0..1 over the whole shadow map; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
 // binding light_sampler: linear, clamped to the edge; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
 // binding bases: filtered bases, M/4 layers, or what the filter makes with COLORS, rgba8unorm or rgba16float.
-// binding rank_cells: what `rank` makes, rg32uint; with RANK only.
-// binding rank_starts: the same, r32uint; with RANK only.
-// binding rank_planes: the same, rgba32uint; with RANK only.
+// binding wavelet: what `wavelet` makes, rgba32uint; with WAVELET only.
+// binding rank_cells: what `rank` makes, rg32uint, or with COLORS `rank_weights`, rgba32uint; with RANK only, without WAVELET; so the next two.
+// binding rank_starts: the same, r32uint.
+// binding rank_planes: the same, rgba32uint.
+// binding rank_weights: the same, rgba32uint; with RANK and WEIGHT_BITS only.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
 // binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
@@ -49,7 +53,7 @@
 #endif
 #import airlight::scattering::prefiltered::{Prefix, map_size, prefix_visibility, prefix_colors}
 #import airlight::scattering::rectify::{
-    Frame, epipolar_ray, nearest_row, slice_from_texel, depth_from_ray, warped_depth
+    Frame, epipolar_ray, nearest_row, slice_from_texel, greatest_sine, depth_from_ray, warped_depth
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
@@ -73,15 +77,28 @@ const EPIPOLE_TEXELS: f32 = 8.0;
 /// Steps of that march.
 const EPIPOLE_STEPS: u32 = 96u;
 
+/// Optical depths of a texel.
+struct Steps {
+    /// Of the ray itself.
+    ray: f32,
+    /// By which what was stored is weighted.
+    stored: f32,
+}
+
 /// The stretch of a ray up to `texels` in the region of its row that begins at texel `first`.
-fn prefix(ray: RowRay, first: f32, texels: f32, reference_step: f32) -> Prefix {
-    return Prefix(ray.row, frame.wraps, first, texels, reference_step);
+fn prefix(ray: RowRay, first: f32, texels: f32, steps: Steps) -> Prefix {
+    return Prefix(ray.row, frame.wraps, first, texels, steps.ray, steps.stored);
 }
 
 #ifndef COLORS
-/// Mean visibility of a ray over its stretch of the row. `reference_step`: optical depth of a texel by which the bases
-/// are weighted; `optical_step`: that of the ray itself, by which regions are put together.
-fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
+/// Mean visibility of a ray over its stretch of the row.
+fn mean_visibility(ray: RowRay, steps: Steps) -> f32 {
+#ifdef RANK
+    let mean_step = steps.ray;
+#else
+    // Prefix means are weighted by the reference ray; the regions are put together by the ray itself.
+    let mean_step = steps.stored;
+#endif
     let width = map_size().x;
     let first = region_of(ray.begin, width, ROW_REGIONS);
     let last = region_of(ray.end, width, ROW_REGIONS);
@@ -91,18 +108,18 @@ fn mean_visibility(ray: RowRay, reference_step: f32, optical_step: f32) -> f32 {
         let start = f32(region_begin(region, width, ROW_REGIONS));
         let from_texel = max(ray.begin, start);
         let to_texel = min(ray.end, f32(region_begin(region + 1u, width, ROW_REGIONS)));
-        var mean = prefix_visibility(prefix(ray, start, to_texel, reference_step), ray.depth);
+        var mean = prefix_visibility(prefix(ray, start, to_texel, steps), ray.depth);
 #ifdef NEAR_PLANE
         if from_texel > start {
-            let whole = prefix_weight(reference_step, to_texel - start);
-            let before = prefix_weight(reference_step, from_texel - start);
-            let skipped = prefix_visibility(prefix(ray, start, from_texel, reference_step), ray.depth);
+            let whole = prefix_weight(mean_step, to_texel - start);
+            let before = prefix_weight(mean_step, from_texel - start);
+            let skipped = prefix_visibility(prefix(ray, start, from_texel, steps), ray.depth);
             let part = mean * whole - skipped * before;
             mean = clamp(part / max(whole - before, 1e-6 * whole), 0.0, 1.0);
         }
 #endif
         // In units of the stretch's first texel: finite however deep the stretch lies.
-        let weight = exp(-optical_step * (from_texel - ray.begin)) * prefix_weight(optical_step, to_texel - from_texel);
+        let weight = exp(-steps.ray * (from_texel - ray.begin)) * prefix_weight(steps.ray, to_texel - from_texel);
         sum += mean * weight;
         total += weight;
     }
@@ -136,15 +153,19 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 #endif
     // Optical depth of a texel of a ray at right angles to the light.
     let across = extinction * slice.radius_max / width;
-    let reference_step = across / slice.reference;
-#ifdef COLORS
-    var visibility = prefix_colors(prefix(row_ray, 0.0, texels, reference_step), row_ray.depth);
-#else ifdef REGIONS
-    var visibility = mean_visibility(row_ray, reference_step, across / max(ray.sine, 1e-6));
-#else ifdef NEAR_PLANE
-    var visibility = mean_visibility(row_ray, reference_step, across / max(ray.sine, 1e-6));
+#ifdef RANK
+    let steps = Steps(across / max(ray.sine, 1e-6), across / greatest_sine(slice));
 #else
-    var visibility = prefix_visibility(prefix(row_ray, 0.0, texels, reference_step), row_ray.depth);
+    let steps = Steps(across / max(ray.sine, 1e-6), across / slice.reference);
+#endif
+#ifdef COLORS
+    var visibility = prefix_colors(prefix(row_ray, 0.0, texels, steps), row_ray.depth);
+#else ifdef REGIONS
+    var visibility = mean_visibility(row_ray, steps);
+#else ifdef NEAR_PLANE
+    var visibility = mean_visibility(row_ray, steps);
+#else
+    var visibility = prefix_visibility(prefix(row_ray, 0.0, texels, steps), row_ray.depth);
 #endif
 #ifndef COLORS
     visibility = clamp(visibility, 0.0, 1.0);
@@ -152,13 +173,13 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
 
 #ifdef EPIPOLE_MARCH
     let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
-    let steps = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
+    let samples = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
     let direction = perspective_ray(camera, ndc).direction;
 #ifdef PER_POINT
-    let marched = marched_light(light, camera.eye, direction, vec2<f32>(near, ray.distance), extinction, steps, 0.5);
+    let marched = marched_light(light, camera.eye, direction, vec2<f32>(near, ray.distance), extinction, samples, 0.5);
 #else
     let marched = vec3<f32>(marched_visibility(
-        light, camera.eye + near * direction, direction, ray.distance - near, extinction, steps, 0.5
+        light, camera.eye + near * direction, direction, ray.distance - near, extinction, samples, 0.5
     ));
 #endif
 #ifdef COLORS

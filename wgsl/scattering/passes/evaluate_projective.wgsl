@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
-// summary: In-scattered radiance of every pixel from filtered bases over projective rows, for cameras of any kind.
+// summary: In-scattered radiance of every pixel from filtered bases or rank queries over projective rows, for cameras of any kind.
 // source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
-// note: Texel i holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
+// note: Texel i of the bases holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
 // note: An orthographic camera needs NEAR_PLANE: its rays do not begin at the start of their rows.
-// definition BASES: number M of bases, as in the filter.
+// definition BASES: number M of bases, as in the filter; without RANK.
+// definition RANK: exact visibility by rank queries, bits of a depth as in `rank_weights`. Not with REGIONS.
+// definition WEIGHT_BITS: bits of a weight, as in `rank_weights`; with RANK.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition AVERAGE: the bases are plain means.
 // definition NEAREST: the nearest texel of the bases instead of a bilinear blend; no sampler.
@@ -14,8 +16,13 @@
 // binding medium: the medium.
 // binding rows: the projective rows.
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
-// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float.
-// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
+// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float; without RANK.
+// binding rank_cells: what `rank_weights` makes, rg32uint; with RANK only.
+// binding rank_starts: the same, r32uint; with RANK only.
+// binding rank_planes: the same, rgba32uint; with RANK only.
+// binding rank_weights: the same, rgba32uint; with RANK only.
+// binding rectified: the rectified map, of which only the size is read; with RANK only.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST and RANK.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}
@@ -25,7 +32,7 @@
 #import airlight::scattering::prefiltered::{Prefix, map_size, prefix_visibility}
 #import airlight::scattering::projective::{
     ProjectiveRows, ProjectiveRay, projective_ray, reference_reach, column_from_x, x_from_column, texel_begin,
-    filtered_column, stretch_weight
+    filtered_column, weighed_column, stretch_weight
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
@@ -43,10 +50,17 @@ const ROW_REGIONS: u32 = u32(#{REGIONS});
 const ROW_REGIONS: u32 = 1u;
 #endif
 
-/// The mean that a region of a row holds for `column`, whose neighbours are interpolated linearly.
-fn filtered_mean(ray: RowRay, first: u32, column: f32) -> f32 {
+/// The mean over a row from the texel `first`, where a region begins, up to `x` metres of X. `reach`: of the reference ray;
+/// `extinction` in 1/m, 0 for plain means.
+fn mean_up_to(ray: RowRay, first: u32, reach: f32, extinction: f32, x: f32) -> f32 {
+    let width = f32(map_size().x);
+#ifdef RANK
+    let texels = weighed_column(rows, width, reach, extinction, x);
+#else
     // A stretch is read half a texel before its end.
-    return prefix_visibility(Prefix(ray.row, 0.0, f32(first), column + 0.5, 0.0), ray.depth);
+    let texels = filtered_column(rows, width, reach, extinction, first, x) + 0.5;
+#endif
+    return prefix_visibility(Prefix(ray.row, 0.0, f32(first), texels, 0.0, 0.0), ray.depth);
 }
 
 /// Mean visibility of a view ray between its ends. `row_ray`: the same in columns; `extinction` in 1/m, 0 for plain means.
@@ -66,13 +80,12 @@ fn projective_visibility(along: ProjectiveRay, row_ray: RowRay, extinction: f32)
         if region < last {
             to_x = max(texel_begin(rows, width, region_begin(region + 1u, size.x, ROW_REGIONS)), from_x);
         }
-        var mean = filtered_mean(row_ray, column, filtered_column(rows, width, reach, extinction, column, to_x));
+        var mean = mean_up_to(row_ray, column, reach, extinction, to_x);
 #ifdef NEAR_PLANE
         if from_x > start {
             let whole = stretch_weight(extinction, (to_x - start) * reach);
             let before = stretch_weight(extinction, (from_x - start) * reach);
-            let filtered = filtered_column(rows, width, reach, extinction, column, from_x);
-            let skipped = filtered_mean(row_ray, column, filtered);
+            let skipped = mean_up_to(row_ray, column, reach, extinction, from_x);
             mean = clamp((mean * whole - skipped * before) / max(whole - before, 1e-6 * whole + 1e-30), 0.0, 1.0);
         }
 #endif

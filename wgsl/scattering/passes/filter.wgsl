@@ -29,39 +29,10 @@
 
 #import airlight::core::finite::finite_or
 #import airlight::core::fourier_basis::{series_at, series_next, stored_from_basis, surface_bias}
-#import airlight::core::light::{Light, angular_falloff, light_texture_color}
-#import airlight::core::prefix_sum::{RowWeights, row_weights, row_weights_next, running_mean}
-#import airlight::scattering::local_light::{
-    local_slice_from_texel, light_angle_of_column, light_ray_direction, column_weight, distance_to_light
-}
-#import airlight::scattering::projective::{
-    ProjectiveRows, reference_reach, texel_begin, texel_end, stretch_weight
-}
-#import airlight::scattering::rectify::{Frame, slice_from_texel, row_azimuth, azimuth_direction}
+#import airlight::core::prefix_sum::{RowWeights, running_mean}
+#import airlight::scattering::column_weights::{weighted_column, next_column, falloff_of_column}
 #import airlight::scattering::rows::region_begin
-#import airlight::scattering::single_scatter::Medium
 
-#ifdef PROJECTIVE
-@group(#{GROUP}) @binding(8) var<uniform> rows: ProjectiveRows;
-#else ifndef AVERAGE
-@group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
-#else ifdef COLORS
-@group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
-#endif
-#ifndef AVERAGE
-@group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
-#endif
-#ifdef COLORS
-@group(#{GROUP}) @binding(4) var<uniform> light: Light;
-@group(#{GROUP}) @binding(5) var<uniform> frame: Frame;
-#ifdef LIGHT_TEXTURE
-@group(#{GROUP}) @binding(6) var light_texture: texture_2d<f32>;
-@group(#{GROUP}) @binding(7) var light_sampler: sampler;
-#endif
-#else ifdef LOCAL
-@group(#{GROUP}) @binding(4) var<uniform> light: Light;
-@group(#{GROUP}) @binding(5) var<uniform> frame: Frame;
-#endif
 @group(#{GROUP}) @binding(2) var rectified: texture_2d<f32>;
 #ifdef RGBA16FLOAT
 @group(#{GROUP}) @binding(3) var bases: texture_storage_2d_array<rgba16float, write>;
@@ -78,25 +49,6 @@ const ROW_REGIONS: u32 = 1u;
 const PER_THREAD: u32 = u32(#{BASES_PER_THREAD}) / 4u;
 #ifdef COLORS
 const COLOR_COUNT: u32 = u32(#{COLORS});
-
-/// Fall-off and texture of the light ray of `row` at `unit`, 0..1 along the row, for each colour 0..1.
-fn falloff_of_column(row: u32, unit: f32) -> vec3<f32> {
-    let texel = textureLoad(slices, vec2<u32>(row, 0u), 0);
-    let radial = azimuth_direction(frame, row_azimuth(frame, f32(row)));
-#ifdef LOCAL
-    let direction = light_ray_direction(frame, radial, light_angle_of_column(local_slice_from_texel(texel), unit));
-    let falloff = vec3<f32>(angular_falloff(light, -direction));
-    let point = light.position + direction;
-#else
-    let falloff = vec3<f32>(1.0);
-    let point = frame.eye + unit * slice_from_texel(texel).radius_max * radial;
-#endif
-#ifdef LIGHT_TEXTURE
-    return falloff * light_texture_color(light, light_texture, light_sampler, point);
-#else
-    return falloff;
-#endif
-}
 #else
 const COLOR_COUNT: u32 = 1u;
 #endif
@@ -110,50 +62,18 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let begin = region_begin(id.z, size.x, ROW_REGIONS);
-#ifdef PROJECTIVE
-#ifdef AVERAGE
-    let extinction = 0.0;
-#else
-    let extinction = medium.extinction;
-#endif
-    let reach = reference_reach(rows, f32(size.y), f32(row));
-    // Transmittance from the start of the region.
-    var through = 1.0;
-    var edge = texel_begin(rows, f32(size.x), begin);
-    var weights = RowWeights(0.0, 0.0, 1.0);
-#else ifdef AVERAGE
-    var weights = row_weights(0.0);
-#else ifdef LOCAL
-    let slice = local_slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
-    let away = distance_to_light(frame, light.position);
-    var weights = RowWeights(0.0, 0.0, 1.0);
-#else
-    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
-    var weights = row_weights(medium.extinction * slice.radius_max / (f32(size.x) * slice.reference));
-#endif
+    var at_column = weighted_column(row, size, begin, begin);
+    var total = 0.0;
     var means = array<vec4<f32>, PER_THREAD * COLOR_COUNT>();
 #ifdef COLORS
     var mean_falloff = vec4<f32>(0.0);
 #endif
     let end = region_begin(id.z + 1u, size.x, ROW_REGIONS);
     for (var column = begin; column < end; column++) {
-#ifdef PROJECTIVE
-        let next = texel_end(rows, f32(size.x), column);
-        let metres = (next - edge) * reach;
-        weights.weight = through * stretch_weight(extinction, metres);
-        weights.total += weights.weight;
-        through *= exp(-extinction * metres);
-        edge = next;
-#endif
+        total += at_column.weight;
+        let weights = RowWeights(at_column.weight, total, 1.0);
         let depth = clamp(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), 0.0, 1.0);
         let blocker = min(depth + surface_bias(4u * LAYERS), 1.0);
-#ifdef LOCAL
-#ifndef AVERAGE
-        let at_light = light_angle_of_column(slice, (f32(column) + 0.5) / f32(size.x));
-        let weight = column_weight(slice, away, at_light, medium);
-        weights = RowWeights(weight, weights.total + weight, 1.0);
-#endif
-#endif
 #ifdef COLORS
         let falloff = falloff_of_column(row, (f32(column) + 0.5) / f32(size.x));
         mean_falloff = running_mean(mean_falloff, vec4<f32>(falloff, 1.0), weights);
@@ -184,11 +104,6 @@ fn filter_rows(@builtin(global_invocation_id) id: vec3<u32>) {
             series = series_next(series);
 #endif
         }
-#ifdef PROJECTIVE
-#else ifdef AVERAGE
-        weights = row_weights_next(weights);
-#else ifndef LOCAL
-        weights = row_weights_next(weights);
-#endif
+        at_column = next_column(at_column, size);
     }
 }

@@ -6,7 +6,7 @@
 // note: do, where equal texels lie in two chunks: one thread then gives out the ranks in the order of the columns.
 // note: Rows of more than 2048 columns are not taken: their order would not fit into workgroup memory.
 // definition RANK: bits of a depth, 8 to 12.
-// definition AVERAGE: cells count texels, instead of adding their transmittance on the reference ray.
+// definition AVERAGE: cells count texels, instead of adding their transmittance at two optical depths of a texel.
 // binding medium: the medium; without AVERAGE.
 // binding slices: bounds of the slices, rgba32float; without AVERAGE.
 // binding rectified: the rectified map, r32float or a depth format; non-finite values count as 1, lit.
@@ -14,60 +14,31 @@
 // binding rank_starts: out, r32uint: how many texels of a row have a smaller value, two of 16 bits a texel, a row each.
 // binding rank_planes: out, rgba32uint: bit planes, four a layer, lowest first; one texel for 32 columns, a row each.
 
-#import airlight::core::finite::finite_or
-#import airlight::scattering::rectify::slice_from_texel
+#import airlight::core::prefix_sum::prefix_weight
+#import airlight::scattering::rank_sort::{rectified, counts, texels, sort_row, THREADS, COLUMNS, NONE}
+#import airlight::scattering::rectify::{slice_from_texel, greatest_sine}
 #import airlight::scattering::single_scatter::Medium
-#import airlight::scattering::visibility_rank::{rank_value, WEIGHT_STEPS}
 
 #ifndef AVERAGE
 @group(#{GROUP}) @binding(0) var<uniform> medium: Medium;
 @group(#{GROUP}) @binding(1) var slices: texture_2d<f32>;
 #endif
-@group(#{GROUP}) @binding(2) var rectified: texture_2d<f32>;
 @group(#{GROUP}) @binding(3) var rank_cells: texture_storage_2d<rg32uint, write>;
-@group(#{GROUP}) @binding(4) var rank_starts: texture_storage_2d<r32uint, write>;
-@group(#{GROUP}) @binding(5) var rank_planes: texture_storage_2d_array<rgba32uint, write>;
 
-const BITS: u32 = u32(#{RANK});
-const THREADS: u32 = 64u;
-/// Columns of the widest row.
-const COLUMNS: u32 = 2048u;
-/// Pairs of values.
-const PAIRS: u32 = 1u << (BITS - 1u);
-const PAIRS_PER_THREAD: u32 = PAIRS / THREADS;
-/// Cells that are made at a time.
+/// Threads of the workgroup of a row.
+const GROUP_THREADS: u32 = 64u;
+/// Cells that are made at a time: first their masks in `counts` and, behind CELLS of them, what they weigh at the lesser
+/// step, and then at the greater one.
 const CELLS: u32 = 1024u;
-/// Stands for the texel beyond the last of a row.
-const NONE: u32 = 0xffffu;
+#ifdef AVERAGE
+const WORDS_PER_CELL: u32 = 1u;
+#else
+const WORDS_PER_CELL: u32 = 3u;
+/// Steps of a weight. The first weighs all of them.
+const WEIGHT_STEPS: f32 = 65535.0;
+#endif
 
-/// First how many texels have each value, then how many have a smaller one, two of 16 bits a word; then the masks of
-/// cells and, behind CELLS of them, what is added in each.
-var<workgroup> counts: array<atomic<u32>, 2u * CELLS>;
-/// Values of the texels, then their ranks, two of 16 bits a word.
-var<workgroup> texels: array<u32, COLUMNS / 2u>;
-/// Texels of each thread's values.
-var<workgroup> sums: array<u32, THREADS>;
-
-/// Value of a texel, counted; NONE beyond the row.
-fn counted_value(column: u32, row: u32, columns: u32) -> u32 {
-    if column >= columns {
-        return NONE;
-    }
-    let value = rank_value(finite_or(textureLoad(rectified, vec2<u32>(column, row), 0).x, 1.0), BITS);
-    atomicAdd(&counts[value / 2u], 1u << (16u * (value & 1u)));
-    return value;
-}
-
-/// The next rank of a value; NONE for NONE.
-fn next_rank(value: u32) -> u32 {
-    if value == NONE {
-        return NONE;
-    }
-    let shift = 16u * (value & 1u);
-    return (atomicAdd(&counts[value / 2u], 1u << shift) >> shift) & 0xffffu;
-}
-
-@compute @workgroup_size(THREADS)
+@compute @workgroup_size(GROUP_THREADS)
 fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     let size = textureDimensions(rectified);
     let row = group.x;
@@ -77,60 +48,28 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
     if row >= size.y {
         return;
     }
-    for (var word = thread; word < words; word += THREADS) {
-        let first = counted_value(2u * word, row, columns);
-        texels[word] = first | (counted_value(2u * word + 1u, row, columns) << 16u);
-    }
-    workgroupBarrier();
-
-    write_planes(thread, row, blocks);
-    var sum = 0u;
-    for (var pair = thread * PAIRS_PER_THREAD; pair < (thread + 1u) * PAIRS_PER_THREAD; pair++) {
-        let both = atomicLoad(&counts[pair]);
-        sum += (both & 0xffffu) + (both >> 16u);
-    }
-    sums[thread] = sum;
-    workgroupBarrier();
-    var start = 0u;
-    for (var before = 0u; before < THREADS; before++) {
-        start += select(0u, sums[before], before < thread);
-    }
-    for (var pair = thread * PAIRS_PER_THREAD; pair < (thread + 1u) * PAIRS_PER_THREAD; pair++) {
-        let both = atomicLoad(&counts[pair]);
-        let packed = start | ((start + (both & 0xffffu)) << 16u);
-        atomicStore(&counts[pair], packed);
-        textureStore(rank_starts, vec2<u32>(pair, row), vec4<u32>(packed, 0u, 0u, 0u));
-        start += (both & 0xffffu) + (both >> 16u);
-    }
-    workgroupBarrier();
 #ifdef AVERAGE
-    let optical_step = 0.0;
+    let least_step = 0.0;
     let rankers = THREADS;
 #else
     let rankers = 1u;
     let slice = slice_from_texel(textureLoad(slices, vec2<u32>(row, 0u), 0));
-    let optical_step = max(medium.extinction * slice.radius_max / (f32(size.x) * slice.reference), 0.0);
+    let least_step = max(medium.extinction * slice.radius_max / (f32(size.x) * greatest_sine(slice)), 0.0);
 #endif
-    if thread < rankers {
-        for (var word = thread; word < words; word += rankers) {
-            let values = texels[word];
-            let first = next_rank(values & 0xffffu);
-            texels[word] = first | (next_rank(values >> 16u) << 16u);
-        }
-    }
+    sort_row(thread, row, columns, rankers);
     // As many chunks at a time as there is room for.
     let strip = CELLS / blocks;
-    var base = 0u;
+    var base = vec2<u32>(0u);
     for (var first = 0u; first < blocks; first += strip) {
         workgroupBarrier();
-        for (var cell = thread; cell < 2u * CELLS; cell += THREADS) {
+        for (var cell = thread; cell < WORDS_PER_CELL * CELLS; cell += THREADS) {
             atomicStore(&counts[cell], 0u);
         }
         workgroupBarrier();
         for (var word = thread; word < words; word += THREADS) {
             let ranks = texels[word];
-            add_texel(2u * word, ranks & 0xffffu, first, strip, blocks, optical_step);
-            add_texel(2u * word + 1u, ranks >> 16u, first, strip, blocks, optical_step);
+            add_texel(2u * word, ranks & 0xffffu, first, strip, blocks, least_step);
+            add_texel(2u * word + 1u, ranks >> 16u, first, strip, blocks, least_step);
         }
         workgroupBarrier();
         for (var chunk = thread; chunk < strip; chunk += THREADS) {
@@ -138,36 +77,14 @@ fn rank_row(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_i
         }
         workgroupBarrier();
         if thread < blocks {
-            base = write_cells(thread, row, first, min(strip, blocks - first), blocks, base);
+            base = write_cells(thread, row, first, min(strip, blocks - first), blocks, base, least_step);
         }
     }
 }
 
-/// Bit planes of the values of a block.
-fn write_planes(block: u32, row: u32, blocks: u32) {
-    if block >= blocks {
-        return;
-    }
-    var low = vec4<u32>(0u);
-    var middle = vec4<u32>(0u);
-    var high = vec4<u32>(0u);
-    // Columns beyond the row are never asked for.
-    for (var column = 0u; column < 32u; column++) {
-        let value = (texels[16u * block + column / 2u] >> (16u * (column & 1u))) & 0xffffu;
-        let bits = vec4<u32>(value) >> vec4<u32>(0u, 1u, 2u, 3u);
-        low |= (bits & vec4<u32>(1u)) << vec4<u32>(column);
-        middle |= ((bits >> vec4<u32>(4u)) & vec4<u32>(1u)) << vec4<u32>(column);
-        high |= ((bits >> vec4<u32>(8u)) & vec4<u32>(1u)) << vec4<u32>(column);
-    }
-    textureStore(rank_planes, vec2<u32>(block, row), 0u, low);
-    textureStore(rank_planes, vec2<u32>(block, row), 1u, middle);
-    if BITS > 8u {
-        textureStore(rank_planes, vec2<u32>(block, row), 2u, high);
-    }
-}
-
-/// Adds a texel to the cell of its chunk and block, if the chunk is one of `strip` from `first` on.
-fn add_texel(column: u32, rank: u32, first: u32, strip: u32, blocks: u32, optical_step: f32) {
+/// Adds a texel to the cell of its chunk and block, if the chunk is one of `strip` from `first` on. `least_step`: the
+/// lesser optical depth of a texel.
+fn add_texel(column: u32, rank: u32, first: u32, strip: u32, blocks: u32, least_step: f32) {
     let chunk = rank / 32u - first;
     // Chunks before the first wrap to great numbers, and NONE is one.
     if chunk >= strip || rank == NONE {
@@ -176,34 +93,47 @@ fn add_texel(column: u32, rank: u32, first: u32, strip: u32, blocks: u32, optica
     let cell = min(chunk * blocks + column / 32u, CELLS - 1u);
     atomicOr(&counts[cell], 1u << (rank & 31u));
 #ifndef AVERAGE
-    atomicAdd(&counts[CELLS + cell], u32(exp(-optical_step * f32(column)) * WEIGHT_STEPS + 0.5));
+    let weight = exp(-least_step * f32(column));
+    atomicAdd(&counts[CELLS + cell], u32(weight * WEIGHT_STEPS + 0.5));
+    atomicAdd(&counts[2u * CELLS + cell], u32(weight * weight * WEIGHT_STEPS + 0.5));
 #endif
 }
 
 /// Turns what is in each block of a chunk, from `begin` on, into what is left of the block.
 fn sum_blocks(begin: u32, blocks: u32) {
     var mask = 0u;
-    var added = 0u;
+    var lesser = 0u;
+    var greater = 0u;
     for (var cell = begin; cell < begin + blocks; cell++) {
         mask |= atomicExchange(&counts[cell], mask);
 #ifndef AVERAGE
-        added += atomicExchange(&counts[CELLS + cell], added);
+        lesser += atomicExchange(&counts[CELLS + cell], lesser);
+        greater += atomicExchange(&counts[2u * CELLS + cell], greater);
 #endif
     }
 }
 
-/// The cells of a block with `count` chunks from `first` on; gives the base after them.
-fn write_cells(block: u32, row: u32, first: u32, count: u32, blocks: u32, before: u32) -> u32 {
+/// The cells of a block with `count` chunks from `first` on; gives the base after them. `least_step`: as in `add_texel`.
+fn write_cells(
+    block: u32, row: u32, first: u32, count: u32, blocks: u32, before: vec2<u32>, least_step: f32
+) -> vec2<u32> {
     var base = before;
+#ifndef AVERAGE
+    let columns = f32(32u * block);
+    let whole = vec2<f32>(prefix_weight(least_step, columns), prefix_weight(2.0 * least_step, columns));
+    let share = 1.0 / max(whole * WEIGHT_STEPS, vec2<f32>(1.0));
+#endif
     for (var chunk = 0u; chunk < count; chunk++) {
         let cell = chunk * blocks + block;
         let mask = atomicLoad(&counts[cell]);
-        textureStore(rank_cells, vec2<u32>(first * blocks + cell, row), vec4<u32>(mask, base, 0u, 0u));
 #ifdef AVERAGE
-        base += countOneBits(mask);
+        let stored = base.x;
+        base.x += countOneBits(mask);
 #else
-        base += atomicLoad(&counts[CELLS + cell]);
+        let stored = pack2x16unorm(vec2<f32>(base) * share);
+        base += vec2<u32>(atomicLoad(&counts[CELLS + cell]), atomicLoad(&counts[2u * CELLS + cell]));
 #endif
+        textureStore(rank_cells, vec2<u32>(first * blocks + cell, row), vec4<u32>(mask, stored, 0u, 0u));
     }
     return base;
 }

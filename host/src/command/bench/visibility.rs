@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The three ways to prefilter visibility: cost, memory and error of each over the same rectified map.
+//! The four ways to prefilter visibility: cost, memory and error of each over the same rectified map.
 
 use super::scattering::{SIZE, SYSTEM, Truth, VISIBILITY, run, stage};
 use super::{Quality, Row, Work, figure, interleaved, ratio, time};
@@ -62,12 +62,13 @@ impl Contestant {
     }
 }
 
-const AVERAGE: [(&str, Visibility, Weighting); 5] = [
+const AVERAGE: [(&str, Visibility, Weighting); 6] = [
     ("fourier", Visibility::Fourier, Weighting::Average),
     ("rank10", Visibility::Rank { bits: 10 }, Weighting::Average),
     ("rank12", Visibility::Rank { bits: 12 }, Weighting::Average),
     ("moments", Visibility::Moments, Weighting::Average),
     ("rank12_weighted", Visibility::Rank { bits: 12 }, Weighting::Transmittance),
+    ("wavelet12", Visibility::Wavelet { bits: 12 }, Weighting::Average),
 ];
 
 /// Every figure of the methods.
@@ -84,8 +85,8 @@ fn costs(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let (_, stage) = stage(gpu, shaders, "foliage", SIZE)?;
     let all = AVERAGE.iter().map(|kind| Contestant::new(gpu, shaders, &stage, *kind, SIZE));
     let all = all.collect::<Result<Vec<_>, _>>()?;
-    let [fourier, rank10, rank12, moments, _] = &all[..] else {
-        return Err(CommandError::failure("five methods are compared"));
+    let [fourier, rank10, rank12, moments, _, wavelet] = &all[..] else {
+        return Err(CommandError::failure("six methods are compared"));
     };
     let map = &fourier.method.rectification;
     let along = Along::RowSteps { map, steps: map.rectified.size()[0] };
@@ -103,8 +104,8 @@ fn costs(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let marched = |encoder: &mut wgpu::CommandEncoder| march.record(encoder, &march_bound);
     works.push(&marched);
     let samples = interleaved(gpu, &works, 7)?;
-    let [f, r10, r12, m, w, marching] = &samples[..] else {
-        return Err(CommandError::failure("six pieces of work are timed"));
+    let [f, r10, r12, m, w, smallest, marching] = &samples[..] else {
+        return Err(CommandError::failure("seven pieces of work are timed"));
     };
     let quality = |own: &Contestant, baseline: &crate::Texture| -> Result<_, CommandError> {
         let (error, baseline_error) = (error(&own.method.scattered)?, error(baseline)?);
@@ -123,6 +124,8 @@ fn costs(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
         lower("exact12_over_fourier_cost", r12, f, against_fourier(rank12)?),
         memory("exact12_over_fourier_memory", rank12),
         lower("exact12_weighted_over_average_cost", w, r12, None),
+        lower("smallest_exact_over_fourier_cost", smallest, f, against_fourier(wavelet)?),
+        memory("smallest_exact_over_fourier_memory", wavelet),
         lower("moments_over_fourier_cost", m, f, against_fourier(moments)?),
         memory("moments_over_fourier_memory", moments),
     ];

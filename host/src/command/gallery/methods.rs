@@ -111,6 +111,7 @@ fn series(studio: &Studio, stage: &Stage, caption: &str, settings: Settings) -> 
         Visibility::Fourier => format!("fourier_{bases}"),
         Visibility::Moments => "moments".to_owned(),
         Visibility::Rank { bits } => format!("rank_{bits}"),
+        Visibility::Wavelet { bits } => format!("wavelet_{bits}"),
     };
     Ok(Entry { file, caption: caption.to_owned(), scattered: prefiltered.scattered, time })
 }

@@ -80,7 +80,7 @@ impl Studio {
         let depth_warp = light.local();
         let settings = Settings { light, epipole_march, depth_warp, ..self.settings() };
         if stage.camera.projection == 0 {
-            let visibility = Visibility::automatic(&light, settings.map[0]);
+            let visibility = Visibility::automatic(settings.map[0]);
             self.epipolar(stage, Settings { visibility, ..settings })
         } else {
             self.projective(stage, settings)
@@ -163,6 +163,7 @@ fn rows(kind: &str, settings: Settings, bases: &Texture) -> String {
         Visibility::Fourier => format!("{} bases in {layers} layers", settings.bases),
         Visibility::Moments => "6 moments".to_owned(),
         Visibility::Rank { bits } => format!("rank queries of {bits} bits"),
+        Visibility::Wavelet { bits } => format!("a wavelet matrix of {bits} bits"),
     };
     format!("{kind}, {columns}x{rows}, {stored}")
 }

@@ -100,38 +100,49 @@ fn march(flags: &Options) -> Vec<Rule> {
 }
 
 fn methods(flags: &Options) -> Vec<Rule> {
-    let other = matches!(flags.method, MethodSpelling::Moments | MethodSpelling::Rank);
-    let rank = matches!(flags.visibility(&flags.form()), Visibility::Rank { .. });
+    let moments = flags.method == MethodSpelling::Moments;
+    let wavelet = flags.method == MethodSpelling::Wavelet;
+    let exact = wavelet || flags.method == MethodSpelling::Rank;
+    let (other, plain) = (exact || moments, wavelet || moments);
+    let rank = matches!(flags.visibility(), Visibility::Rank { .. } | Visibility::Wavelet { .. });
     const BASES: &str = "it is of Fourier bases: leave it out, or take --method fourier";
+    const EPIPOLAR: &str =
+        "moments and wavelet matrices are of epipolar rows: leave it out, or take --method rank or fourier";
     vec![
         (
-            other && (flags.local() || flags.light_texture.is_some()),
+            plain && (flags.local() || flags.light_texture.is_some()),
             "--method",
-            "`moments` and `rank` are for directional lights without --light-texture: take auto",
+            "`moments` and `wavelet` are for directional lights without --light-texture: take auto",
         ),
         (
-            other && flags.camera == Projection::Orthographic,
+            plain && flags.camera == Projection::Orthographic,
             "--method",
-            "`moments` and `rank` need a perspective camera: take auto",
+            "`moments` and `wavelet` need a perspective camera: take auto",
         ),
         (other && flags.bases.is_some(), "--bases", BASES),
         (other && flags.half, "--half", BASES),
         (other && flags.regions > 1, "--regions", BASES),
-        (other && flags.splits.is_some(), "--splits", BASES),
-        (
-            other && flags.rectification == RectificationSpelling::Projective,
-            "--rectification",
-            "`projective` rows are filtered by Fourier bases only: take auto, or --method fourier",
-        ),
+        (plain && flags.splits.is_some(), "--splits", EPIPOLAR),
+        (plain && flags.rectification == RectificationSpelling::Projective, "--rectification", EPIPOLAR),
         (
             flags.bits.is_some() && !rank,
             "--bits",
-            "only rank queries have them: leave it out, or take --method rank",
+            "only rank queries and wavelet matrices have them: leave it out, or take --method rank",
         ),
         (
-            flags.method == MethodSpelling::Rank && flags.map[0] > RANK_COLUMNS,
+            exact && flags.map[0] > RANK_COLUMNS,
             "--map",
-            "`--method rank` takes at most 2048 columns: take fewer, or --method auto",
+            "`--method rank` and `wavelet` take at most 2048 columns: take fewer, or --method auto",
+        ),
+        (
+            wavelet && flags.bits.is_some_and(|bits| bits % 2 != 0),
+            "--bits",
+            "a wavelet matrix has 8, 10 or 12: take one of these, or --method rank",
+        ),
+        (
+            wavelet && !flags.average,
+            "--method",
+            "`wavelet` counts texels and has no weights: give --average as well, or take --method rank",
         ),
     ]
 }

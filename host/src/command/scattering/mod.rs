@@ -179,7 +179,7 @@ impl Eye {
 
 fn settings(options: &Options, form: LightForm, gpu: &Gpu) -> Settings {
     Settings {
-        visibility: options.visibility(&form),
+        visibility: options.visibility(),
         bases: options.bases.unwrap_or(Settings::default().bases),
         map: options.map,
         format: if options.half { BasisFormat::Rgba16Float } else { BasisFormat::Rgba8Unorm },

@@ -110,8 +110,11 @@ fn automatic(
 ) -> Plan {
     let march = |reason: &str| Plan { rows: Rows::None, reason: format!("none, marched instead ({reason})") };
     let epipolar = |reason: &str| Plan { rows: Rows::Epipolar, reason: format!("epipolar ({reason})") };
-    let bases = flags.visibility(&form) == Visibility::Fourier;
-    if bases && form.plain() && flags.reference == ReferenceSpelling::Bisectrix {
+    let visibility = flags.visibility();
+    // Rank queries see through a row to its last texel in either rectification: epipolar rows have theirs where the light is.
+    let asked = visibility == Visibility::Fourier || flags.splits.is_some();
+    let level = cameras.iter().any(|camera| camera.projection != 0) && visibility != Visibility::Moments;
+    if (asked || level) && form.plain() && flags.reference == ReferenceSpelling::Bisectrix {
         let mut rows = Vec::new();
         for camera in cameras {
             match choose(camera) {
@@ -137,8 +140,10 @@ fn automatic(
         "a light texture is filtered along them only"
     } else if form.shadow_array {
         "cascades are resampled along them only"
-    } else if !bases {
-        "moments and rank queries are of these"
+    } else if visibility == Visibility::Moments {
+        "moments are of these"
+    } else if !asked {
+        "rank queries need no others for a perspective camera"
     } else {
         "--reference optimum is of these"
     })

@@ -54,6 +54,41 @@ impl SteppedRow {
         (lit + last, whole as f64 + part)
     }
 
+    /// Like `lit_texels` with a weight for each texel: how much of it is lit, and how much is covered. A stretch too short to
+    /// cover anything sees the whole first texel.
+    ///
+    /// # Panics
+    /// Where there are fewer weights than texels.
+    #[must_use]
+    pub fn lit_weight(&self, texels: f64, depth: f64, weights: &[f64]) -> (f64, f64) {
+        assert!(weights.len() >= self.steps.len(), "{} weights", weights.len());
+        let ray = depth_step(depth, self.bits);
+        let (whole, part) = self.covered(texels);
+        let (mut lit, mut covered) = (0.0, 0.0);
+        for (i, &stored) in self.steps.iter().enumerate() {
+            let share = if i < whole {
+                1.0
+            } else if i == whole {
+                part
+            } else {
+                0.0
+            };
+            covered += share * weights[i];
+            if ray <= stored {
+                lit += share * weights[i];
+            }
+        }
+        (lit, covered)
+    }
+
+    /// The columns in the order of their steps, those of equal steps in their own order.
+    #[must_use]
+    pub fn sorted_columns(&self) -> Vec<usize> {
+        let mut columns: Vec<usize> = (0..self.steps.len()).collect();
+        columns.sort_by_key(|&column| (self.steps[column], column));
+        columns
+    }
+
     /// Mean visibility of the first `texels` texels for a ray of a depth: plain, and weighted by the light that is taken
     /// in each texel, `e^(-a i) - e^(-a (i + 1))` with `a` the optical depth of a texel.
     #[must_use]
@@ -121,6 +156,18 @@ mod tests {
                 assert!((found.weighted - expected).abs() < 1e-9, "{texels}, {optical_step}: {found:?}");
             }
         }
+    }
+
+    #[test]
+    fn equal_weights_count_and_others_weigh() {
+        let row = SteppedRow::new(&[0.8, 0.2, 0.8, 0.2], 12);
+        for texels in [0.5, 1.0, 2.25, 3.0, 4.0] {
+            assert_eq!(row.lit_weight(texels, 0.5, &[1.0; 4]), row.lit_texels(texels, 0.5));
+        }
+        let weights = [1.0, 10.0, 100.0, 1000.0];
+        assert_eq!(row.lit_weight(2.5, 0.5, &weights), (51.0, 61.0));
+        assert_eq!(row.lit_weight(4.0, 0.9, &weights), (0.0, 1111.0));
+        assert_eq!(row.sorted_columns(), [1, 3, 0, 2]);
     }
 
     #[test]
