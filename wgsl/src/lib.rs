@@ -92,6 +92,7 @@ modules! {
     core::picture [],
     core::prefix_sum [],
     core::jitter ["core::finite"],
+    core::noise ["core::finite"],
     core::ray_depth ["core::camera"],
     core::resolve_depth [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
@@ -115,6 +116,7 @@ modules! {
         "scattering::rows", "scattering::visibility_fourier", "scattering::visibility_moments",
         "scattering::visibility_rank"
     ],
+    stylize::perlin_holes ["core::noise"],
 }
 
 passes! {
@@ -137,6 +139,8 @@ passes! {
     scattering/reduce_depth,
     scattering/upsample,
     scattering/composite,
+    stylize/hole_mask,
+    stylize/punch_holes,
 }
 
-systems![core, scattering];
+systems![core, scattering, stylize];
