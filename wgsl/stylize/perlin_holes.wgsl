@@ -58,6 +58,7 @@ fn octave_noise(holes: HoleParameters, position: vec2<f32>) -> f32 {
     let octaves = clamp(holes.octaves, 1u, MOST_OCTAVES);
     var sum = 0.0;
     var weights = 0.0;
+    let persistence = clamp(holes.persistence, 0.0, 1.0);
     var power = 1.0;
     var scale = 1.0;
     for (var octave = 0u; octave < octaves; octave++) {
@@ -65,7 +66,7 @@ fn octave_noise(holes: HoleParameters, position: vec2<f32>) -> f32 {
         let weight = power / f32(max(octaves - octave, 2u) - 1u);
         sum += weight * gradient_noise(scale * position + octave_offset(seed), seed);
         weights += weight;
-        power *= holes.persistence;
+        power *= persistence;
         scale *= 2.0;
     }
     return clamp(0.5 + 0.70710678 * sum / weights, 0.0, 1.0);

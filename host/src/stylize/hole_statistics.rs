@@ -80,6 +80,16 @@ impl Distribution {
         self.share_below(n) / rate
     }
 
+    /// Variance of n.
+    pub(super) fn variance(&self) -> f64 {
+        // Of the cosine series: the mean of n^2 is 1/3, that of n^2 cos(k pi n) is 2 (-1)^k / (k pi)^2, over -1..1.
+        let terms = self.density.iter().enumerate().skip(1);
+        let sum: f64 = terms
+            .map(|(k, value)| if k % 2 == 0 { *value } else { -value } * 4.0 / (k as f64 * PI).powi(2))
+            .sum();
+        1.0 / 3.0 + sum
+    }
+
     /// Mean square slope of n along a line, per cell of the first octave.
     pub(super) fn mean_square_slope(&self) -> f64 {
         self.slope[0]
@@ -118,7 +128,9 @@ fn exact_octave(t: f64) -> [f64; 2] {
     ];
     let mut result = [0.0; 2];
     // Two pieces a side: products of Bessel functions turn faster than one rule follows.
-    let nodes = || [0.0, 0.25].into_iter().flat_map(|from| NODES.map(|[at, weight]| [from + 0.25 * at, 0.5 * weight]));
+    let nodes = || {
+        [0.0, 0.25].into_iter().flat_map(|from| NODES.map(|[at, weight]| [from + 0.25 * at, 0.5 * weight]))
+    };
     for [x, weight_x] in nodes() {
         for [y, weight_y] in nodes() {
             let [value, slope] = at_place(x, y, t);
@@ -171,8 +183,10 @@ fn bessel_zero(x: f64) -> f64 {
         return polynomial(&c, y);
     }
     let y = 3.0 / x;
-    let f = [0.797_884_56, -0.000_000_77, -0.005_527_4, -0.000_095_12, 0.001_372_37, -0.000_728_05, 0.000_144_76];
-    let a = [-FRAC_PI_4, -0.041_663_97, -0.000_039_54, 0.002_625_73, -0.000_541_25, -0.000_293_33, 0.000_135_58];
+    let f =
+        [0.797_884_56, -0.000_000_77, -0.005_527_4, -0.000_095_12, 0.001_372_37, -0.000_728_05, 0.000_144_76];
+    let a =
+        [-FRAC_PI_4, -0.041_663_97, -0.000_039_54, 0.002_625_73, -0.000_541_25, -0.000_293_33, 0.000_135_58];
     polynomial(&f, y) * (x + polynomial(&a, y)).cos() / x.sqrt()
 }
 
@@ -184,12 +198,87 @@ fn bessel_first(x: f64) -> f64 {
         return x * polynomial(&c, y);
     }
     let y = 3.0 / x;
-    let f = [0.797_884_56, 0.000_001_56, 0.016_596_67, 0.000_171_05, -0.002_495_11, 0.001_136_53, -0.000_200_33];
-    let a =
-        [-3.0 * FRAC_PI_4, 0.124_996_12, 0.000_056_5, -0.006_378_79, 0.000_743_48, 0.000_798_24, -0.000_291_66];
+    let f =
+        [0.797_884_56, 0.000_001_56, 0.016_596_67, 0.000_171_05, -0.002_495_11, 0.001_136_53, -0.000_200_33];
+    let a = [
+        -3.0 * FRAC_PI_4,
+        0.124_996_12,
+        0.000_056_5,
+        -0.006_378_79,
+        0.000_743_48,
+        0.000_798_24,
+        -0.000_291_66,
+    ];
     polynomial(&f, y) * (x + polynomial(&a, y)).cos() / x.sqrt()
 }
 
 fn polynomial(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bessel_functions_are_their_integrals() {
+        // The mean of cos(x cos a) over all angles, and of cos(a) sin(x cos a): the trapezium rule is exact for 400 angles.
+        for x in (0..600).map(|i| f64::from(i) * 0.25) {
+            let angles = (0..400).map(|i| (f64::from(i) + 0.5) * PI / 200.0);
+            let [mut zero, mut first] = [0.0; 2];
+            for angle in angles {
+                zero += (x * angle.cos()).cos() / 400.0;
+                first += angle.cos() * (x * angle.cos()).sin() / 400.0;
+            }
+            assert!((bessel_zero(x) - zero).abs() < 1e-7, "{x}");
+            // Of J1 / x the error is below 2e-8.
+            assert!((bessel_first(x) - first).abs() < 1e-7, "{x}");
+        }
+    }
+
+    #[test]
+    fn one_octave_has_the_variance_and_slope_of_its_definition() {
+        // Of sum w^2 d^2 / 2, the variance of the noise at a place, and of the slope likewise, by the midpoint rule.
+        let fade = |x: f64| x * x * x * (x * (6.0 * x - 15.0) + 10.0);
+        let [mut variance, mut slope] = [0.0; 2];
+        for (x, y) in (0..400 * 400).map(|i| (f64::from(i % 400) + 0.5, f64::from(i / 400) + 0.5)) {
+            let (x, y) = (x / 400.0, y / 400.0);
+            for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+                let weight = |x: f64| fade(1.0 - (x - i).abs()) * fade(1.0 - (y - j).abs());
+                let a = |x: f64| [weight(x) * (x - i), weight(x) * (y - j)];
+                let step = 1e-5;
+                let b = [0, 1].map(|k| (a(x + step)[k] - a(x - step)[k]) / (2.0 * step));
+                variance += 0.5 * (a(x)[0].powi(2) + a(x)[1].powi(2)) / 160_000.0;
+                slope += 0.5 * (b[0].powi(2) + b[1].powi(2)) / 160_000.0;
+            }
+        }
+        // n is sqrt 2 times the noise.
+        let one = Distribution::new(&[1.0]);
+        assert!((one.variance() - 2.0 * variance).abs() < 2e-3, "{} {}", one.variance(), 2.0 * variance);
+        let expected = 2.0 * slope;
+        assert!((one.mean_square_slope() - expected).abs() < 5e-3 * expected, "{}", one.mean_square_slope());
+    }
+
+    #[test]
+    fn levels_are_those_of_the_published_weights() {
+        // Thresholds of 0..1 for shares of the area, by simulation to three digits.
+        let shares = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5];
+        for (octaves, levels) in [
+            (1, [0.243, 0.296, 0.366, 0.413, 0.457, 0.5]),
+            (3, [0.348, 0.381, 0.421, 0.451, 0.476, 0.5]),
+            (5, [0.377, 0.403, 0.436, 0.460, 0.481, 0.5]),
+        ] {
+            let weights: Vec<f64> =
+                (0..octaves).map(|i: i32| 0.5_f64.powi(i) / f64::from((octaves - i - 1).max(1))).collect();
+            let distribution = Distribution::new(&weights);
+            for (share, level) in shares.into_iter().zip(levels) {
+                let found = 0.5 + 0.5 * distribution.level(share);
+                assert!((found - level).abs() < 3e-3, "{octaves} octaves, {share}: {found} is not {level}");
+                assert!((distribution.share_below(distribution.level(share)) - share).abs() < 1e-9);
+                // The noise is as often above as below 0.
+                assert!((distribution.level(1.0 - share) + distribution.level(share)).abs() < 1e-9);
+            }
+        }
+    }
 }
