@@ -62,7 +62,7 @@ fn directions_have_length_one_and_the_angle_of_the_hash() {
     };
     let mut random = Random(12);
     let mut hashes: Vec<u32> = (0..1024).map(|i| i << 22).collect();
-    hashes.extend((0..1024).map(|i| (i << 22).wrapping_sub(1)));
+    hashes.extend((0..1024_u32).map(|i| (i << 22).wrapping_sub(1)));
     hashes.extend((0..4000).map(|_| random.bits()));
     let inputs: Vec<f32> = hashes.iter().flat_map(|hash| halves(*hash)).collect();
     let found = probe.run(&inputs);

@@ -79,8 +79,8 @@ fn noise_and_masks_are_those_of_the_reference() {
             let noise = &pictures(HolePicture::Noise, size, &[parameters])[0];
             let mask = &pictures(HolePicture::Mask, size, &[parameters])[0];
             // A position in cells is a float: 2^-24 of 40 cells, times the slope of the noise; of the finest octaves that is
-            // 2^7 times as steep but a hundredth as high. The displacement adds the adapter's sine, 2^-11 in WGSL.
-            let budget = if moving { 2e-3 } else { 5e-5 };
+            // 2^7 times as steep but a hundredth as high. The displacement adds the rounding of its own position.
+            let budget = if moving { 1e-4 } else { 5e-5 };
             let mut worst = 0.0_f64;
             let mut counted = 0;
             for (i, (noise, mask)) in noise.iter().zip(mask).enumerate() {
@@ -120,12 +120,13 @@ fn holes_have_the_area_and_size_that_were_asked_for() {
 #[test]
 fn other_persistences_sizes_and_motions_keep_the_promise() {
     let _turn = turn();
+    // Cells of the finest octave are at least three texels: of smaller ones a map misses the shortest chords.
     let still = Holes { density: 0.2, ..Holes::default() };
     let moving = |distance| HoleMotion { distance, ..HoleMotion::default() };
     for holes in [
         Holes { size: 30.0, octaves: 2, persistence: 1.0, ..still },
         Holes { size: 8.0, octaves: 4, persistence: 0.2, ..still },
-        Holes { size: 12.0, octaves: 8, persistence: 0.4, ..still },
+        Holes { size: 12.0, octaves: 6, persistence: 0.3, ..still },
         Holes { size: 12.0, octaves: 5, persistence: 0.0, density: 0.3, ..still },
         Holes { size: 12.0, octaves: 1, motion: moving(6.0), ..still },
         Holes { size: 12.0, octaves: 3, motion: moving(12.0), ..still },

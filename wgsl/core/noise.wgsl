@@ -6,7 +6,7 @@
 // note: and by Jensen's inequality P^2 <= sum of w d^2 = g(x) + g(y) with g(x) = (1 - s) x^2 + s (1 - x)^2 and s the fade.
 // note: g(x) - 1/4 = (1 - 2x) (s - (1 + 2x) / 4). For x <= 1/2 the fade is convex from 0 to 1/2, so that s <= x <= (1 + 2x) / 4
 // note: and g <= 1/4; x > 1/2 is the mirror image. So P^2 <= 1/2, met in the middle of a cell.
-// note: Gradients have any direction, evenly, from polynomials: no adapter's sine has a say in where a hole is.
+// note: Gradients have any direction, evenly, from polynomials: adapters differ by rounding alone, not by their sines.
 // note: On whole coordinates the noise is 0. f32 has 1/8 of a cell left at 2^20; from 2^24 on the noise is 0.
 
 #import airlight::core::finite::finite_or

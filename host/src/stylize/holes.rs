@@ -177,7 +177,8 @@ pub struct Holes {
     pub size: f32,
     /// Share of the area that is hole, 0..1.
     pub density: f32,
-    /// Octaves of the noise, 1..8: how ragged edges are.
+    /// Octaves of the noise, 1..8: how ragged edges are. Octaves with cells of less than three texels are wasted: the map
+    /// misses the shortest pieces, and the others come out longer than asked for.
     pub octaves: u32,
     /// Persistence of Eq. 5, 0..1: how much the finer octaves count.
     pub persistence: f32,
