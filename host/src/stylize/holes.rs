@@ -269,7 +269,7 @@ impl HolePattern {
         }
         let cells = DVec2::new(f64::from(extent[0]), f64::from(extent[1])) / cell;
         let finest = cells.max_element() * f64::from(1_u32 << (holes.octaves - 1));
-        if !(finest <= MOST_CELLS) {
+        if finest.is_nan() || finest > MOST_CELLS {
             return Err(HoleError::TooSmall {
                 size: holes.size,
                 extent: extent[0].max(extent[1]),
@@ -303,7 +303,7 @@ impl HolePattern {
     /// # Errors
     /// [`HoleError::Value`] for a time that is not finite or beyond 1e9 seconds.
     pub fn at(&self, seconds: f64) -> Result<HoleParameters, HoleError> {
-        if !(seconds.abs() <= 1e9) {
+        if seconds.is_nan() || seconds.abs() > 1e9 {
             return Err(HoleError::Value { name: "time", value: seconds, range: "from -1e9 to 1e9 seconds" });
         }
         let travelled = seconds * f64::from(self.pace);
