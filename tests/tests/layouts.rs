@@ -5,7 +5,7 @@
 
 use airlight::core::{Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, TonemapParameters};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
-use airlight::stylize::{Disc, EpipolarKernel, Epipole, Window};
+use airlight::stylize::{Disc, EpipolarKernel, Epipole, HoleParameters, Window};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -193,6 +193,10 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     });
     twin!(twins: ResolveDepthParameters {
         extinction: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
+    });
+    twin!(twins: HoleParameters {
+        cells: Vec2, threshold: f32, persistence: f32, octaves: u32, seed: u32, travel: u32, travel_part: f32,
+        displacement: f32, turn: f32, far_depth: f32, reserved: f32,
     });
     twins
 }

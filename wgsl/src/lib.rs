@@ -92,6 +92,7 @@ modules! {
     core::picture [],
     core::prefix_sum [],
     core::jitter ["core::finite"],
+    core::noise ["core::finite"],
     core::ray_depth ["core::camera"],
     core::resolve_depth [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
@@ -124,6 +125,7 @@ modules! {
     ],
     stylize::morphology [],
     stylize::epipolar_dilate ["core::finite"],
+    stylize::perlin_holes ["core::noise"],
 }
 
 passes! {
@@ -152,6 +154,8 @@ passes! {
     stylize/disc,
     stylize/epipolar_direct,
     stylize/epipolar_return,
+    stylize/hole_mask,
+    stylize/punch_holes,
 }
 
 systems![core, scattering, stylize];

@@ -2,17 +2,22 @@
 //! Light shafts in the hands of an artist: the host's side of `wgsl/stylize`.
 //!
 //! [`Morphology`] closes holes of a shadow map with a box or a disc; [`EpipolarMorphology`] extrudes its blockers
-//! along view rays, where the camera cannot see it.
+//! along view rays, where the camera cannot see it; [`PunchHoles`] makes random holes in the shadow of an object.
 
 mod epipolar;
 mod epipole;
 mod error;
+mod hole_statistics;
+mod holes;
+mod holes_passes;
 mod kernel;
 mod morphology;
 
 pub use epipolar::{EpipolarBound, EpipolarKernel, EpipolarMorphology, EpipolarSettings, Form};
 pub use epipole::Epipole;
 pub use error::StylizeError;
+pub use holes::{HoleError, HoleMotion, HoleParameters, HolePattern, Holes, shadow_map_extent};
+pub use holes_passes::{HoleMask, HolePicture, PunchHoles, PunchHolesBound};
 pub use kernel::{Element, Operator, Width};
 pub use morphology::{Disc, Morphology, MorphologyBound, MorphologySettings, Window};
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Morphology of shadow maps, every texel of every window looked at: with a box or a disc, and along view rays
-//! (stylized scattering, Eq. 3). Depth grows away from the light where `far` is 1, towards it where that is 0; what is not
-//! finite counts as `far`. Windows are cut at the border of the map.
+//! (stylized scattering, Eq. 3); and random holes. Depth grows away from the light where `far` is 1, towards it where that is
+//! 0; what is not finite counts as `far`. Windows are cut at the border of the map.
 
 mod epipolar;
+pub mod holes;
 mod morphology;
 
 pub use epipolar::{Epipole, Interval, Kernel, hidden};
