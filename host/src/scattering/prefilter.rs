@@ -59,8 +59,8 @@ impl Settings {
             return Ok(());
         }
         let method = self.visibility.name();
-        let moments = self.visibility == Visibility::Moments;
-        if moments && (self.light.colors().is_some() || self.light.local()) {
+        let plain = matches!(self.visibility, Visibility::Moments | Visibility::Wavelet { .. });
+        if plain && (self.light.colors().is_some() || self.light.local()) {
             return Err(SettingsError::Visibility { method, reason: "a plain directional light" });
         }
         if self.regions > 1 {
