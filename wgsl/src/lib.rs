@@ -117,6 +117,9 @@ modules! {
     ],
     stylize::morphology [],
     stylize::epipolar_dilate ["core::finite"],
+    stylize::tf_diffuse [],
+    stylize::tf_layers [],
+    stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
 }
 
 passes! {
@@ -143,6 +146,9 @@ passes! {
     stylize/disc,
     stylize/epipolar_direct,
     stylize/epipolar_return,
+    stylize/diffuse,
+    stylize/transfer_layer,
+    stylize/transfer,
 }
 
 systems![core, scattering, stylize];
