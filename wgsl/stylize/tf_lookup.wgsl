@@ -82,14 +82,14 @@ fn picture_angle(camera: Camera, light: Light, ndc: vec2<f32>) -> f32 {
 
 /// A property of a ray, 0..1. `depth_limit`: metres.
 fn ray_property(property: u32, ray: RayProperties, depth_limit: f32) -> f32 {
-    let limit = max(depth_limit, 1e-6);
+    let limit = clamp(depth_limit, 1e-6, 1e15);
     let turns = ray.picture_angle * 0.15915494309189535;
     var value = ray.visibility;
     value = select(value, ray.distance / limit, property == LINEAR_DEPTH);
     value = select(value, acos(clamp(ray.cosine, -1.0, 1.0)) * 0.3183098861837907, property == LIGHT_ANGLE);
     value = select(value, turns - floor(turns), property == PICTURE_ANGLE);
     value = select(value, ray.visible_distance / limit, property == VISIBLE_DEPTH);
-    return clamp(value, 0.0, 1.0);
+    return clamp(finite_or(value, 0.0), 0.0, 1.0);
 }
 
 /// Where a ray lies in the function, 0..1 in x and y.
@@ -115,10 +115,10 @@ fn stylized(
     let phase = select(ISOTROPIC, henyey_greenstein(cosine, function.g), function.phase == HENYEY_GREENSTEIN);
     // A constant phase function leaves the colours of REPLACE as they are.
     var tint = vec3<f32>(phase / ISOTROPIC);
-    tint = select(tint, light_radiance * phase, function.mode == LIGHT);
+    tint = select(tint, clamp(light_radiance, vec3<f32>(0.0), vec3<f32>(1e15)) * phase, function.mode == LIGHT);
     tint = select(tint, radiance, function.mode == SCATTERING);
     let strength = clamp(function.strength, 0.0, 1.0);
     let kept = radiance * (1.0 - strength * color.a);
-    let added = color.rgb * tint * (strength * max(function.brightness, 0.0));
+    let added = color.rgb * tint * (strength * clamp(function.brightness, 0.0, 65504.0));
     return clamp(kept + added, vec3<f32>(0.0), vec3<f32>(65504.0));
 }

@@ -2,19 +2,27 @@
 //! Light shafts in the hands of an artist: the host's side of `wgsl/stylize`.
 //!
 //! [`Morphology`] closes holes of a shadow map with a box or a disc; [`EpipolarMorphology`] extrudes its blockers
-//! along view rays, where the camera cannot see it.
+//! along view rays, where the camera cannot see it. [`Transfer`] functions restyle what a scattering method wrote.
 
 mod epipolar;
 mod epipole;
 mod error;
 mod kernel;
 mod morphology;
+mod transfer;
 
 pub use epipolar::{EpipolarBound, EpipolarKernel, EpipolarMorphology, EpipolarSettings, Form};
 pub use epipole::Epipole;
 pub use error::StylizeError;
 pub use kernel::{Element, Operator, Width};
 pub use morphology::{Disc, Morphology, MorphologyBound, MorphologySettings, Window};
+pub use transfer::{
+    Baker, Blend, Color, Constraint, DiffusionLevel, Keyed, Layer, Mode, Phase, PickScene, Place,
+    RayProperty, Restyle, Source, Transfer, TransferError, TransferFunction, TransferImage, TransferLayer,
+    TransferSettings, TransferShare,
+};
+#[cfg(feature = "command")]
+pub use transfer::{parse_transfer, read_transfer};
 
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass};

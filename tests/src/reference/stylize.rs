@@ -5,6 +5,7 @@
 
 mod epipolar;
 mod morphology;
+pub mod transfer;
 
 pub use epipolar::{Epipole, Interval, Kernel, hidden};
 pub use morphology::{Element, Morphology};

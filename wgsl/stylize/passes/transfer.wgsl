@@ -69,7 +69,7 @@ fn pixel_properties(pixel: vec2<u32>) -> RayProperties {
     let view = view_ray(camera, ndc);
     let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
     // Every ray that reaches the limit looks the same to the function.
-    let distance = distance_on_ray(ray_depth(camera, view, ndc), surface, max(transfer_function.depth_limit, 1e-6));
+    let distance = distance_on_ray(ray_depth(camera, view, ndc), surface, clamp(transfer_function.depth_limit, 1e-6, 1e15));
     let visibility = clamp(finite_or(textureLoad(scattered, pixel, 0).a, 0.0), 0.0, 1.0);
     let cosine = dot(view.direction, direction_to_light(light, view.origin));
     var ray = RayProperties(visibility, distance, cosine, picture_angle(camera, light, ndc), 0.0);
