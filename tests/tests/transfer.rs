@@ -118,9 +118,9 @@ fn diffusion_is_within_a_step_of_the_converged_solution() {
             overall = overall.max(error);
         }
     }
-    // A step of 8 bits is 1/255; that of rgba16float and what multigrid leaves are far less.
+    // Nearly all of it is rounding to rgba16float, twice: the layer, and the function.
     hold("diffusion", overall, 1.0 / 255.0);
-    hold("diffusion, as it is promised in the book", overall, 1e-3);
+    hold("diffusion, as the book has it", overall, 1.0 / 3.0 / 255.0);
 }
 
 #[test]
@@ -132,9 +132,10 @@ fn one_constraint_is_flat_and_two_are_a_gradient() {
     let ends = vec![at(0.1, 0.5, color([0.0, 0.0, 0.0], 1.0)), at(0.9, 0.5, color([1.0, 0.5, 0.0], 1.0))];
     let two = baked(&transfer(255, vec![diffusion(ends)]));
     let row: Vec<f64> = (0..255).map(|x| two[127 * 255 + x][0]).collect();
-    assert!(row.windows(2).all(|pair| pair[1] >= pair[0] - HALF_FLOAT), "{row:?}");
-    let between = &row[40..215];
-    assert!(between.windows(20).all(|far| far[19] > far[0] + 0.01), "it ascends: {between:?}");
+    // Beyond them it turns back a little: the border reflects.
+    assert!(row[25..230].windows(2).all(|pair| pair[1] >= pair[0]), "{row:?}");
+    assert!(row[33..222].windows(20).all(|far| far[19] > far[0] + 0.01), "it ascends: {row:?}");
+    assert!(two.iter().flatten().all(|value| (0.0..=1.0).contains(value)), "nothing exceeds the constraints");
     assert!((row[127] - 0.5).abs() < 1e-3 && row[25] == 0.0 && row[229] == 1.0);
 }
 
@@ -643,7 +644,7 @@ fn impossible_picks_are_errors() {
         8,
         vec![diffusion(vec![Constraint { place: Place::Pixel([1, 1]), color: color([1.0; 3], 1.0) }])],
     );
-    let error = baker().bake(gpu(), &style, None).unwrap_err();
+    let error = baker().bake(gpu(), &style, None).err().unwrap();
     assert!(
         matches!(&error, TransferError::NeedsScene { key } if key == "layer[0].constraint[0]"),
         "{error}"
