@@ -175,6 +175,7 @@ impl Transfer {
         refuse("depth_limit".into(), settings.depth_limit.and_then(|limit| wrong_limit(limit.into())))?;
         refuse("strength".into(), wrong_share(settings.strength.into()))?;
         refuse("brightness".into(), wrong_factor(settings.brightness.into()))?;
+        // 0.999 in f32 is a little more than that.
         refuse("g".into(), settings.g.and_then(|g| wrong_cosine(f64::from(g) * (1.0 - 1e-7))))?;
         refuse("layer".into(), self.layers.is_empty().then(|| NO_LAYERS.into()))?;
         for (number, layer) in self.layers.iter().enumerate() {
