@@ -126,6 +126,9 @@ modules! {
     stylize::morphology [],
     stylize::epipolar_dilate ["core::finite"],
     stylize::perlin_holes ["core::noise"],
+    stylize::tf_diffuse [],
+    stylize::tf_layers [],
+    stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
 }
 
 passes! {
@@ -156,6 +159,9 @@ passes! {
     stylize/epipolar_return,
     stylize/hole_mask,
     stylize/punch_holes,
+    stylize/diffuse,
+    stylize/transfer_layer,
+    stylize/transfer,
 }
 
 systems![core, scattering, stylize];

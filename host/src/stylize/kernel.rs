@@ -55,6 +55,13 @@ impl Width {
         Ok(Self(texels))
     }
 
+    /// The width nearest to a number of texels, which may come from between two key frames: odd, at least 1.
+    pub fn nearest(texels: f32) -> Self {
+        // Above 2^24 every f32 is even.
+        let below = if texels >= 1.0 { texels.min(16_777_216.0) as u32 } else { 0 };
+        Self(below / 2 * 2 + 1)
+    }
+
     /// Texels.
     pub fn texels(self) -> u32 {
         self.0

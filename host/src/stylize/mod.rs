@@ -3,6 +3,7 @@
 //!
 //! [`Morphology`] closes holes of a shadow map with a box or a disc; [`EpipolarMorphology`] extrudes its blockers
 //! along view rays, where the camera cannot see it; [`PunchHoles`] makes random holes in the shadow of an object.
+//! [`Transfer`] functions restyle what a scattering method wrote.
 
 mod epipolar;
 mod epipole;
@@ -12,6 +13,7 @@ mod holes;
 mod holes_passes;
 mod kernel;
 mod morphology;
+mod transfer;
 
 pub use epipolar::{EpipolarBound, EpipolarKernel, EpipolarMorphology, EpipolarSettings, Form};
 pub use epipole::Epipole;
@@ -20,6 +22,13 @@ pub use holes::{HoleError, HoleMotion, HoleParameters, HolePattern, Holes, shado
 pub use holes_passes::{HoleMask, HolePicture, PunchHoles, PunchHolesBound};
 pub use kernel::{Element, Operator, Width};
 pub use morphology::{Disc, Morphology, MorphologyBound, MorphologySettings, Window};
+pub use transfer::{
+    Baker, Blend, Color, Constraint, DiffusionLevel, Keyed, Layer, Mode, Phase, PickScene, Place,
+    RayProperty, Restyle, Source, Transfer, TransferError, TransferFunction, TransferImage, TransferLayer,
+    TransferSettings, TransferShare,
+};
+#[cfg(feature = "command")]
+pub use transfer::{parse_transfer, read_transfer};
 
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass};

@@ -6,6 +6,7 @@
 mod epipolar;
 pub mod holes;
 mod morphology;
+pub mod transfer;
 
 pub use epipolar::{Epipole, Interval, Kernel, hidden};
 pub use morphology::{Element, Morphology};
