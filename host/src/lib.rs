@@ -3,7 +3,7 @@
 //!
 //! [`Gpu`] opens a device on WebGPU's default limits. [`Shaders`] composes modules and passes.
 //! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
-//! of plain functions that record passes into an encoder: [`scattering`].
+//! of plain functions that record passes into an encoder: [`scattering`], [`stylize`].
 
 #[cfg(feature = "command")]
 pub mod command;
@@ -20,6 +20,7 @@ pub mod scattering;
 pub mod scenes;
 mod shaders;
 mod stage;
+pub mod stylize;
 
 pub use airlight_validate as validate;
 pub use gpu::{Gpu, GpuError};

@@ -3,7 +3,8 @@
 //! the march along its rows, for the benchmarks and the tests to compare with.
 //!
 //! Each is a pass that builds a texture from the rectified map and one that evaluates a picture,
-//! average visibility over the nearest row. Their sources import Airlight's modules.
+//! average visibility over the nearest row. Their sources import Airlight's modules. One more copies
+//! a shadow map, texel by texel: the floor under all that morphology does.
 
 pub mod minmax;
 pub mod variance;
@@ -28,11 +29,12 @@ macro_rules! picture {
 }
 
 /// Every pass.
-pub const PASSES: [Source; 6] = [
+pub const PASSES: [Source; 7] = [
     Source { name: "minmax_build", text: include_str!("baselines/minmax_build.wgsl") },
     Source { name: "minmax", text: picture!("baselines/minmax.wgsl") },
     Source { name: "minmax_binary_build", text: include_str!("baselines/minmax_binary_build.wgsl") },
     Source { name: "minmax_binary", text: picture!("baselines/minmax_binary.wgsl") },
     Source { name: "variance_filter", text: include_str!("baselines/variance_filter.wgsl") },
     Source { name: "variance", text: picture!("baselines/variance.wgsl") },
+    Source { name: "copy", text: include_str!("baselines/copy.wgsl") },
 ];

@@ -4,6 +4,8 @@
 pub mod camera;
 pub mod fourier;
 pub mod light;
+pub mod noise;
 pub mod phase;
 pub mod prefix_sum;
 pub mod scattering;
+pub mod stylize;

@@ -18,7 +18,7 @@ use gpu::{Probe, Random, gpu, shaders};
 use probing::{f, hold, worst};
 
 /// Every function of the core modules, each with a test here or in one of `core_*.rs`.
-const COVERED: [(&str, &[&str]); 12] = [
+const COVERED: [(&str, &[&str]); 13] = [
     (
         "camera",
         &[
@@ -74,6 +74,19 @@ const COVERED: [(&str, &[&str]); 12] = [
     ("ray_depth", &["ray_depth", "distance_on_ray", "depth_on_ray"]),
     ("resolve_depth", &["averaging_extinction", "distance_of_transmittance"]),
     ("picture", &["picture_corner"]),
+    // In tests/tests/core_noise.rs.
+    (
+        "noise",
+        &[
+            "hash_of_three",
+            "unit_from_hash",
+            "direction_from_hash",
+            "quintic_fade",
+            "corner_slope",
+            "gradient_noise_in_cell",
+            "gradient_noise",
+        ],
+    ),
 ];
 
 #[test]

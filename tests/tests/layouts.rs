@@ -5,6 +5,10 @@
 
 use airlight::core::{Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, TonemapParameters};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
+use airlight::stylize::{
+    DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
+    TransferShare, Window,
+};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -179,8 +183,35 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: ProjectiveSplit { clip_from_world: Mat4 });
     twin!(twins: MarchParameters { steps: u32, offset: f32, frame: u32, reserved: u32 });
     twin!(twins: Reduction { factor: u32, tolerance: f32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: Window {
+        before: u32, after: u32, stride: u32, reserved_a: u32, sign: f32, far_depth: f32, reserved_b: f32,
+        reserved_c: f32,
+    });
+    twin!(twins: Disc {
+        radius: u32, level: u32, first_row: u32, end_row: u32, sign: f32, far_depth: f32, begins: u32, ends: u32,
+    });
+    twin!(twins: Epipole { position: Vec2, depth: f32, weight: f32 });
+    twin!(twins: EpipolarKernel {
+        reach: u32, away: u32, sign: f32, far_depth: f32, first: u32, finish: u32, keep: f32, reserved: u32,
+    });
+    twin!(twins: TransferFunction {
+        across: u32, down: u32, mode: u32, phase: u32, depth_limit: f32, strength: f32, brightness: f32, g: f32,
+    });
+    twin!(twins: TransferLayer {
+        first: Vec4, second: Vec4, from_position: Vec2, to_position: Vec2, kind: u32, blend: u32, opacity: f32,
+        reserved: f32,
+    });
+    twin!(twins: TransferShare { second: f32, reserved_a: f32, reserved_b: f32, reserved_c: f32 });
+    twin!(twins: DiffusionLevel {
+        size: u32, first: u32, coarse_size: u32, coarse_first: u32, parity: u32, count: u32, radius: f32,
+        reserved: f32,
+    });
     twin!(twins: ResolveDepthParameters {
         extinction: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
+    });
+    twin!(twins: HoleParameters {
+        cells: Vec2, threshold: f32, persistence: f32, octaves: u32, seed: u32, travel: u32, travel_part: f32,
+        displacement: f32, turn: f32, far_depth: f32, reserved: f32,
     });
     twins
 }

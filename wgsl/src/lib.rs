@@ -92,6 +92,7 @@ modules! {
     core::picture [],
     core::prefix_sum [],
     core::jitter ["core::finite"],
+    core::noise ["core::finite"],
     core::ray_depth ["core::camera"],
     core::resolve_depth [],
     scattering::rectify ["core::camera", "core::fourier_basis"],
@@ -122,6 +123,12 @@ modules! {
         "scattering::rows", "scattering::visibility_fourier", "scattering::visibility_moments",
         "scattering::visibility_rank", "scattering::visibility_rank_weights", "scattering::visibility_wavelet"
     ],
+    stylize::morphology [],
+    stylize::epipolar_dilate ["core::finite"],
+    stylize::perlin_holes ["core::noise"],
+    stylize::tf_diffuse [],
+    stylize::tf_layers [],
+    stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
 }
 
 passes! {
@@ -146,6 +153,15 @@ passes! {
     scattering/reduce_depth,
     scattering/upsample,
     scattering/composite,
+    stylize/sliding_extremum,
+    stylize/disc,
+    stylize/epipolar_direct,
+    stylize/epipolar_return,
+    stylize/hole_mask,
+    stylize/punch_holes,
+    stylize/diffuse,
+    stylize/transfer_layer,
+    stylize/transfer,
 }
 
-systems![core, scattering];
+systems![core, scattering, stylize];

@@ -100,7 +100,7 @@ pub fn load_light_image(path: impl AsRef<std::path::Path>) -> Result<LightImage,
 
 /// IEC 61966-2-1.
 #[cfg(feature = "command")]
-fn linear_from_srgb(value: f32) -> f32 {
+pub(crate) fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 

@@ -16,6 +16,8 @@ mod tree;
 
 pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
 #[cfg(feature = "command")]
+pub(crate) use light_image::linear_from_srgb;
+#[cfg(feature = "command")]
 pub use light_image::load_light_image;
 pub use light_image::{LightImage, LightImageError};
 #[cfg(feature = "command")]

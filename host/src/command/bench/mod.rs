@@ -5,6 +5,7 @@ pub mod baselines;
 mod choices;
 mod resolution;
 mod scattering;
+mod stylize;
 mod tables;
 mod visibility;
 
@@ -66,7 +67,7 @@ struct Report {
     rows: Vec<Row>,
 }
 
-const SYSTEMS: [&str; 1] = ["scattering"];
+const SYSTEMS: [&str; 2] = ["scattering", "stylize"];
 
 /// Runs the command.
 pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
@@ -82,12 +83,21 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     let gpu = pollster::block_on(Gpu::new())?;
     let shaders = Shaders::builtin();
     println!("adapter: {}", gpu.description());
-    let mut rows = scattering::rows(&gpu, &shaders, quiet)?;
-    print(&rows);
-    if options.tables {
-        let long = tables::scattering(&gpu, &shaders, quiet)?;
-        print(&long);
-        rows.extend(long);
+    let asked =
+        |system: &str| options.systems.is_empty() || options.systems.iter().any(|name| name == system);
+    let mut rows = Vec::new();
+    let mut add = |more: Vec<Row>| {
+        print(&more);
+        rows.extend(more);
+    };
+    if asked("scattering") {
+        add(scattering::rows(&gpu, &shaders, quiet)?);
+        if options.tables {
+            add(tables::scattering(&gpu, &shaders, quiet)?);
+        }
+    }
+    if asked("stylize") {
+        add(stylize::rows(&gpu, &shaders, quiet)?);
     }
     if let Some(path) = &options.json {
         let driver = format!("{} {}", gpu.adapter.driver, gpu.adapter.driver_info);
