@@ -29,8 +29,8 @@ const SHADOW: [u32; 2] = [1024, 1024];
 const STRIDE: usize = 3;
 /// Rank queries err by at most this part of what bases do, in plain means over the same rows.
 const RANKED: f64 = 0.5;
-/// Six moments err by at most this in radiance, as they do for plain directional lights (`moments.rs`).
-const MOMENTS: f64 = 0.02;
+/// Six moments err by at most this more than rank queries, in radiance; both share what rows themselves err by.
+const MOMENTS: f64 = 0.003;
 
 /// A scene with a light, on the GPU.
 struct Case {
@@ -378,12 +378,15 @@ fn radiance_reaches_its_figures() {
             if error.is_nan() || error > 0.03 {
                 failures.push(format!("{}, {weights:?}: {error}", case.name));
             }
-            if of_moments.is_nan() || of_moments > MOMENTS {
-                failures.push(format!("{}, {weights:?}: moments {of_moments}", case.name));
-            }
             // Weights of the reference ray, which all rays of a row share, err more than rank queries do.
             let part = if weighting == Weighting::Average { RANKED } else { 1.0 };
             let of_ranks = relative_rmse(&ranked, &exact);
+            if of_moments.is_nan() || of_moments > of_ranks + MOMENTS {
+                failures.push(format!(
+                    "{}, {weights:?}: moments {of_moments}, rank queries {of_ranks}",
+                    case.name
+                ));
+            }
             if of_ranks.is_nan() || of_ranks > part * error {
                 failures.push(format!("{}, {weights:?}: rank queries {of_ranks}, bases {error}", case.name));
             }
@@ -420,8 +423,8 @@ fn stored_means(map: &Texture, color: u32) -> Vec<[f64; 7]> {
 fn moments_are_prefix_means_with_the_light_s_fall_off() {
     let _turn = gpu::turn();
     for (case, budget) in [
-        (Case::new("spot", spot(), None, None), 1e-4),
-        (Case::new("spot, texture", spot(), Some(panes()), None), 4e-3),
+        (Case::new("spot", spot(), None, None), 5e-6),
+        (Case::new("spot, texture", spot(), Some(panes()), None), 1e-4),
     ] {
         let visibility = Visibility::Moments;
         let settings = Settings { visibility, weighting: Weighting::Average, ..case.settings() };
@@ -547,7 +550,7 @@ fn a_texture_colours_a_directional_light() {
     let six = Settings { visibility: Visibility::Moments, ..case.settings() };
     let moments = relative_rmse(&prefiltered(&thin, six).1, &in_thin_air);
     println!("sun, texture, thin air: moments {:.2} %", 100.0 * moments);
-    assert!(moments < MOMENTS, "{moments}");
+    assert!(moments < ranks + MOMENTS, "{moments} {ranks}");
     let exact = exact(&case);
     let error = relative_rmse(&prefiltered(&case, case.settings()).1, &exact);
     let ranked = relative_rmse(&prefiltered(&case, rank).1, &exact);
@@ -562,7 +565,7 @@ fn a_texture_colours_a_directional_light() {
     println!("sun, texture: moments {:.2} %", 100.0 * moments);
     assert!(error < 0.05, "{error}");
     assert!(ranked < 0.05, "{ranked}");
-    assert!(moments < 0.05, "{moments}");
+    assert!(moments < ranked + MOMENTS, "{moments} {ranked}");
     assert!(march < 0.02, "{march}");
 }
 
