@@ -124,6 +124,8 @@ fn rows_of_a_directional_light_agree_with_the_march() {
     agrees(at, SUN, "--method rank --bits 8", "epipolar (rank queries need", 0.02);
     agrees(at, &format!("{SUN} --average"), "--method wavelet", "epipolar (", 0.015);
     agrees(at, SUN, "--method moments", "epipolar (moments", 0.03);
+    agrees(at, SUN, "--method moments --splits 3", "projective (the light is outside", 0.03);
+    agrees(at, SUN, "--method moments --rectification projective", "projective (as asked for)", 0.03);
     agrees(at, SUN, "--method fourier", "projective (", 0.03);
     agrees(at, SUN, "--rectification projective --splits 4", "projective (as asked for)", 0.015);
     agrees(
@@ -174,6 +176,7 @@ fn orthographic_cameras_are_rectified_or_marched() {
     let at = at.path();
     let sun = format!("{ORTHOGRAPHIC} --light directional:95,35");
     agrees(at, &sun, "--start near-plane", "projective (", 0.05);
+    agrees(at, &sun, "--method moments", "projective (", 0.05);
     agrees(at, &format!("{sun} --depth-range reversed"), "--resolution half", "projective (", 0.05);
     for (light, reason) in [
         ("--light point:-1.5,1.5,0.5", "none, marched instead (an orthographic"),
@@ -212,6 +215,8 @@ fn spots_and_point_lights_agree_with_the_march() {
     agrees(at, SPOT, "", "epipolar (rows of a spot", 0.08);
     agrees(at, SPOT, "--half --bases 64 --rectification epipolar", "epipolar (as asked for)", 0.06);
     agrees(at, POINT, "", "epipolar (rows of a spot", 0.03);
+    agrees(at, SPOT, "--method moments", "epipolar (rows of a spot", 0.08);
+    agrees(at, POINT, "--method moments", "epipolar (rows of a spot", 0.04);
     agrees(at, &format!("{POINT} --average"), "", "epipolar (", 0.03);
     agrees_exactly(at, &format!("{EYE} --light point:0.5,1.2,6"), "none, marched instead (the eye is 0 m");
 }
@@ -222,6 +227,10 @@ fn light_textures_and_cascades_agree_with_the_march() {
     let at = at.path();
     agrees(at, &format!("{SUN} --light-texture glass.png"), "", "epipolar (a light texture", 0.04);
     agrees(at, &format!("{SPOT} --light-texture glass.png"), "", "epipolar (", 0.1);
+    let moments = "--method moments";
+    agrees(at, &format!("{SUN} --light-texture glass.png"), moments, "epipolar (a light texture", 0.04);
+    agrees(at, &format!("{SPOT} --light-texture glass.png"), moments, "epipolar (", 0.1);
+    agrees(at, &format!("{SUN} --cascades 3"), moments, "epipolar (cascades", 0.03);
     agrees(at, &format!("{SUN} --cascades 3"), "--regions 2", "epipolar (cascades", 0.03);
     agrees(at, &format!("{SUN} --cascades 2 --light-texture glass.png"), "", "epipolar (", 0.04);
     let glass = Run::new(at, "hall.obj", &format!("{SUN} --light-texture glass.png --method march"));
@@ -400,6 +409,9 @@ fn awkward_sizes_draw() {
         "--size 3x2 --map 33x2 --shadow-map 2x2 --light point:0,3,0 --method rank --bits 8",
         "--size 3x2 --map 31x2 --shadow-map 2x2 --rectification projective --splits 4",
         "--size 3x2 --map 1x2 --shadow-map 1x2 --method moments --start near-plane",
+        "--size 3x2 --map 1x2 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png --method moments",
+        "--size 3x2 --map 9x2 --shadow-map 2x2 --light point:0,3,0 --method moments",
+        "--size 3x2 --map 31x2 --shadow-map 2x2 --rectification projective --method moments --splits 4",
         "--size 3x5 --map 65x2 --shadow-map 1x1 --method wavelet --average --bits 10 --start near-plane",
         // Wider than rank queries take: bases.
         "--size 3x2 --map 2049x2 --shadow-map 2x2",

@@ -77,10 +77,10 @@ fn flags_that_cannot_be_meant_are_refused() {
     }
     for flag in ["--splits 2", "--rectification projective"] {
         let parts = [flag.split(' ').next().unwrap(), "--method rank"];
-        bad(&format!("--method moments {flag}"), &parts);
+        bad(&format!("--method wavelet --average {flag}"), &parts);
     }
     for other in [spot, point, orthographic, "--light-texture glass.png"] {
-        bad(&format!("--method moments {other}"), &["--method", "take auto"]);
+        bad(&format!("--method wavelet --average {other}"), &["--method", "`wavelet`", "take auto"]);
     }
     for bits in ["7", "13", "ten"] {
         bad(&format!("--bits {bits}"), &["--bits", bits]);

@@ -29,6 +29,8 @@ const SHADOW: [u32; 2] = [1024, 1024];
 const STRIDE: usize = 3;
 /// Rank queries err by at most this part of what bases do, in plain means over the same rows.
 const RANKED: f64 = 0.5;
+/// Six moments err by at most this more than rank queries, in radiance; both share what rows themselves err by.
+const MOMENTS: f64 = 0.003;
 
 /// A scene with a light, on the GPU.
 struct Case {
@@ -352,11 +354,14 @@ fn radiance_reaches_its_figures() {
             let exact = over_rows(&case, &method, weights);
             let rank = Visibility::Rank { bits: 12 };
             let (_, ranked) = prefiltered(&case, Settings { weighting, visibility: rank, ..case.settings() });
+            let visibility = Visibility::Moments;
+            let (_, moments) = prefiltered(&case, Settings { weighting, visibility, ..case.settings() });
+            let of_moments = relative_rmse(&moments, &exact);
             let other = over_rows(&case, &method, Weights::Exact);
             let error = relative_rmse(&found, &exact);
             println!(
                 "{}, {}: {:.2} % of {weights:?}, {:.2} % of the exact weights, {:.2} % of the truth; march {:.2} %; \
-                 rank queries {:.2} %, {:.2} %, {:.2} %",
+                 rank queries {:.2} %, {:.2} %, {:.2} %; moments {:.2} %, {:.2} %, {:.2} %",
                 case.name,
                 gpu::weighting_name(weighting),
                 100.0 * error,
@@ -365,7 +370,10 @@ fn radiance_reaches_its_figures() {
                 100.0 * march,
                 100.0 * relative_rmse(&ranked, &exact),
                 100.0 * relative_rmse(&ranked, &other),
-                100.0 * relative_rmse(&ranked, &truth)
+                100.0 * relative_rmse(&ranked, &truth),
+                100.0 * of_moments,
+                100.0 * relative_rmse(&moments, &other),
+                100.0 * relative_rmse(&moments, &truth)
             );
             if error.is_nan() || error > 0.03 {
                 failures.push(format!("{}, {weights:?}: {error}", case.name));
@@ -373,6 +381,12 @@ fn radiance_reaches_its_figures() {
             // Weights of the reference ray, which all rays of a row share, err more than rank queries do.
             let part = if weighting == Weighting::Average { RANKED } else { 1.0 };
             let of_ranks = relative_rmse(&ranked, &exact);
+            if of_moments.is_nan() || of_moments > of_ranks + MOMENTS {
+                failures.push(format!(
+                    "{}, {weights:?}: moments {of_moments}, rank queries {of_ranks}",
+                    case.name
+                ));
+            }
             if of_ranks.is_nan() || of_ranks > part * error {
                 failures.push(format!("{}, {weights:?}: rank queries {of_ranks}, bases {error}", case.name));
             }
@@ -382,6 +396,68 @@ fn radiance_reaches_its_figures() {
         }
     }
     assert!(failures.is_empty(), "{failures:?}");
+}
+
+/// The mean fall-off of each texel and color that the filter of moments stores, and that times the six moments.
+fn stored_means(map: &Texture, color: u32) -> Vec<[f64; 7]> {
+    let [width, height, layers] = map.size();
+    let places: Vec<f32> =
+        (0..height).flat_map(|y| (0..width).flat_map(move |x| [x as f32, y as f32])).collect();
+    let head = "#import airlight::scattering::visibility_moments::unpack_moments
+                @group(#{GROUP}) @binding(2) var map: texture_2d_array<u32>;";
+    let body = format!(
+        "let at = vec2<u32>(vec2<f32>(input(0u), input(1u)));
+         let m = unpack_moments(textureLoad(map, at, {color}u, 0));
+         let falloff = bitcast<vec4<f32>>(textureLoad(map, at, {}u, 0)).{};
+         for (var k = 0u; k < 3u; k++) {{ output(k, falloff * m.low[k]); output(3u + k, falloff * m.high[k]); }}
+         output(6u, falloff);",
+        layers - 1,
+        ["x", "y", "z"][color as usize]
+    );
+    let probe = gpu::Probe { head, body: &body, inputs: 2, outputs: 7 };
+    let found = probe.run_with(&places, &[("map", map)]);
+    found.chunks_exact(7).map(|means| std::array::from_fn(|k| f64::from(means[k]))).collect()
+}
+
+#[test]
+fn moments_are_prefix_means_with_the_light_s_fall_off() {
+    let _turn = gpu::turn();
+    for (case, budget) in [
+        (Case::new("spot", spot(), None, None), 5e-6),
+        (Case::new("spot, texture", spot(), Some(panes()), None), 1e-4),
+    ] {
+        let visibility = Visibility::Moments;
+        let settings = Settings { visibility, weighting: Weighting::Average, ..case.settings() };
+        let (method, _) = prefiltered(&case, settings);
+        let map = method.rectification.rectified.read(gpu()).unwrap();
+        let fall_off =
+            case.with_reference(|scene, maps| rows(scene, &method).fall_off(maps, scene.texture.as_ref()));
+        let width = MAP[0] as usize;
+        for color in 0..case.form.colors().unwrap() {
+            let found = stored_means(method.prefilter.stored(), color);
+            let (mut worst, mut mean, mut light) = (0.0_f64, 0.0, 0.0);
+            for j in 0..MAP[1] as usize {
+                let mut sums = [0.0; 7];
+                for i in 0..width {
+                    let part = fall_off[j * width + i][color as usize];
+                    let own = reference::chebyshev_moments([(f64::from(map[j * width + i]), 1.0)]);
+                    for k in 0..6 {
+                        sums[k] += part * own[k];
+                    }
+                    sums[6] += part;
+                    for k in 0..7 {
+                        let error = (found[j * width + i][k] - sums[k] / (i + 1) as f64).abs();
+                        worst = if error <= worst { worst } else { error };
+                        mean += error / (7 * found.len()) as f64;
+                    }
+                }
+                light += sums[6] / found.len() as f64;
+            }
+            println!("{}, color {color}: worst {worst:.1e}, mean {mean:.1e}, fall-off {light:.2}", case.name);
+            assert!(worst <= budget, "{}, color {color}: {worst}", case.name);
+            assert!((0.1..0.95).contains(&light), "{light}");
+        }
+    }
 }
 
 // Directional lights.
@@ -471,6 +547,10 @@ fn a_texture_colours_a_directional_light() {
         [thin.settings(), rank].map(|settings| relative_rmse(&prefiltered(&thin, settings).1, &in_thin_air));
     println!("sun, texture, thin air: bases {:.2} %, rank queries {:.2} %", 100.0 * bases, 100.0 * ranks);
     assert!(ranks < 0.6 * bases, "{ranks} {bases}");
+    let six = Settings { visibility: Visibility::Moments, ..case.settings() };
+    let moments = relative_rmse(&prefiltered(&thin, six).1, &in_thin_air);
+    println!("sun, texture, thin air: moments {:.2} %", 100.0 * moments);
+    assert!(moments < ranks + MOMENTS, "{moments} {ranks}");
     let exact = exact(&case);
     let error = relative_rmse(&prefiltered(&case, case.settings()).1, &exact);
     let ranked = relative_rmse(&prefiltered(&case, rank).1, &exact);
@@ -481,8 +561,11 @@ fn a_texture_colours_a_directional_light() {
         100.0 * ranked,
         100.0 * march
     );
+    let moments = relative_rmse(&prefiltered(&case, six).1, &exact);
+    println!("sun, texture: moments {:.2} %", 100.0 * moments);
     assert!(error < 0.05, "{error}");
     assert!(ranked < 0.05, "{ranked}");
+    assert!(moments < ranked + MOMENTS, "{moments} {ranked}");
     assert!(march < 0.02, "{march}");
 }
 
@@ -574,7 +657,7 @@ fn wild_light(random: &mut Random, camera: &ReferenceCamera, point: bool) -> Lig
 
 #[test]
 fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
-    const COUNT: usize = 360;
+    const COUNT: usize = 540;
     const PICTURE: [u32; 2] = [16, 8];
     const MAP: [u32; 2] = [16, 8];
     let _turn = gpu::turn();
@@ -618,6 +701,8 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
                 (Weighting::Transmittance, false, Visibility::Fourier),
                 (Weighting::Average, false, rank),
                 (Weighting::Transmittance, true, rank),
+                (Weighting::Average, true, Visibility::Moments),
+                (Weighting::Transmittance, false, Visibility::Moments),
             ]
             .map(|(weighting, epipole_march, visibility)| {
                 let settings = Settings {

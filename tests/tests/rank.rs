@@ -406,20 +406,13 @@ fn what_ranks_cannot_do_is_refused() {
         Err(error) => assert_eq!(error.to_string(), needs("rows in one region")),
         Ok(_) => panic!("regions are taken"),
     }
-    // What ranks can do and moments cannot.
-    let moments = Settings { visibility: Visibility::Moments, ..rank };
-    let needs = |what: &str| format!("the method `moments` needs {what}; `fourier` does without");
+    // Lights and rows that have weights of their own.
     let spot = LightForm { spot: true, ..LightForm::default() };
     let texture = LightForm { texture: true, ..LightForm::default() };
     for light in [spot, texture] {
-        assert_eq!(refusal(Settings { light, ..moments }), needs("a plain directional light"));
         assert!(Prefiltered::new(gpu(), shaders(), Settings { light, ..rank }, [16, 16]).is_ok());
     }
     let map = || ProjectiveMap::drawn(gpu(), [64, 16]).unwrap();
-    match ProjectivePrefiltered::new(gpu(), shaders(), map(), moments, [16, 16]) {
-        Err(error) => assert_eq!(error.to_string(), needs("epipolar rows")),
-        Ok(_) => panic!("projective rows are taken"),
-    }
     assert!(ProjectivePrefiltered::new(gpu(), shaders(), map(), rank, [16, 16]).is_ok());
     // What lies at the bounds is taken.
     for (bits, map) in [(8, [2048, 1]), (12, [1, 16]), (9, [5, 5]), (11, [40, 3])] {

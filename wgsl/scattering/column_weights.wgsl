@@ -2,8 +2,8 @@
 #define_import_path airlight::scattering::column_weights
 // summary: Callback: what the columns of a row weigh in the means over it, and the light's fall-off on them.
 // source: thesis 4.3.2, Eq. 4.8 and 4.12; 4.4.2.
-// note: Unlike algorithm modules a callback holds bindings, those that passes share: the filter of Fourier bases and the
-// note: rank structure weigh columns alike. A light's angular fall-off and texture belong to its light rays, that is to
+// note: Unlike algorithm modules a callback holds bindings, those that passes share: the filters of Fourier bases and of
+// note: moments and the rank structure weigh columns alike. A light's angular fall-off and texture belong to its light rays, that is to
 // note: columns.
 // definition AVERAGE: all columns of slices, and all metres of projective rows, weigh alike.
 // definition LOCAL: rows around a spot or point light.

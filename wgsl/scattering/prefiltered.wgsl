@@ -10,7 +10,8 @@
 // definition AVERAGE: what was stored holds plain means.
 // definition BASES: number M of Fourier bases, as in the filter.
 // definition WEIGHT_BITS: bits of a weight, as in the pass `rank_weights`; with RANK, where columns have weights of their own.
-// definition COLORS: colours of the light, as in the filter; Fourier bases, or RANK and WEIGHT_BITS.
+// definition COLORS: colours of the light, as in the filter; Fourier bases, MOMENTS, or RANK and WEIGHT_BITS.
+// definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition NEAREST: the nearest row, and the nearest texel of what was stored, instead of a bilinear blend; no sampler.
 // binding wavelet: what `wavelet` makes, rgba32uint; with WAVELET only.
@@ -19,7 +20,7 @@
 // binding rank_planes: the same, rgba32uint.
 // binding rank_weights: what `rank_weights` makes, rgba32uint; with RANK and WEIGHT_BITS only.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
-// binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
+// binding moments: what `filter_moments` makes, rgba32uint, with COLORS an array; with MOMENTS only.
 // binding bases: what `filter` makes, rgba8unorm or rgba16float; without RANK and MOMENTS.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; with Fourier bases, absent with NEAREST.
 
@@ -27,7 +28,9 @@
 #import airlight::scattering::visibility_fourier::{
     fourier_visibility, fourier_visibility_nearest, fourier_colors, fourier_colors_nearest
 }
-#import airlight::scattering::visibility_moments::{moments_visibility, moments_visibility_nearest}
+#import airlight::scattering::visibility_moments::{
+    moments_visibility, moments_visibility_nearest, moments_color, moments_color_nearest
+}
 #import airlight::scattering::visibility_rank::{rank_visibility, rank_visibility_weighted}
 #import airlight::scattering::visibility_rank_weights::rank_means
 #import airlight::scattering::visibility_wavelet::wavelet_visibility
@@ -52,7 +55,12 @@ const RANK_COLORS: u32 = 0u;
 #endif
 #endif
 #else ifdef MOMENTS
+#ifdef COLORS
+@group(#{GROUP}) @binding(7) var moments: texture_2d_array<u32>;
+const MOMENT_COLORS: u32 = u32(#{COLORS});
+#else
 @group(#{GROUP}) @binding(7) var moments: texture_2d<u32>;
+#endif
 #else
 @group(#{GROUP}) @binding(7) var bases: texture_2d_array<f32>;
 #ifndef NEAREST
@@ -153,6 +161,27 @@ fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
 }
 #endif
 #else ifdef MOMENTS
+#ifdef COLORS
+/// Mean of visibility times fall-off of a stretch at the depth of a ray, for one colour.
+fn prefix_color(at: Prefix, color: u32, depth: f32) -> f32 {
+    let column = prefix_column(at.texels, at.first);
+#ifdef NEAREST
+    let place = min(vec2<u32>(u32(column), prefix_row(at)), map_size() - 1u);
+    return moments_color_nearest(moments, place, color, MOMENT_COLORS, depth);
+#else
+    return moments_color(moments, vec2<f32>(column, at.row), at.wraps > 0.0, color, MOMENT_COLORS, depth);
+#endif
+}
+
+/// Mean of visibility times fall-off of a stretch at the depth of a ray, for each colour.
+fn prefix_colors(at: Prefix, depth: f32) -> vec3<f32> {
+#ifdef LIGHT_TEXTURE
+    return vec3<f32>(prefix_color(at, 0u, depth), prefix_color(at, 1u, depth), prefix_color(at, 2u, depth));
+#else
+    return vec3<f32>(prefix_color(at, 0u, depth));
+#endif
+}
+#else
 /// Mean visibility of a stretch at the depth of a ray, 0..1.
 fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
     let column = prefix_column(at.texels, at.first);
@@ -163,6 +192,7 @@ fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
     return moments_visibility(moments, vec2<f32>(column, at.row), at.wraps > 0.0, depth);
 #endif
 }
+#endif
 #else
 /// Mean visibility of a stretch at the depth of a ray; not clamped: the series overshoots.
 fn prefix_visibility(at: Prefix, depth: f32) -> f32 {

@@ -25,6 +25,8 @@
 // note: Storage. 21 bits a moment, 126 of the 128 of one rgba32uint texel. With 16 bits, or as two rgba16float layers
 // note: (the same 16 bytes), the bias that rounding asks for is 12 or 200 times as large; the page has the errors.
 // note: Bits do not filter: bilinear reads are four loads, and one solution for the mean of the four.
+// note: Fall-off. Where a light's fall-off differs from column to column, the moments are means weighted by it too, and a
+// note: layer more holds its mean: their product is the mean of visibility times fall-off, for each colour.
 
 #import airlight::core::fourier_basis::GUARD
 
@@ -201,27 +203,82 @@ fn moments_visibility_nearest(map: texture_2d<u32>, place: vec2<u32>, depth: f32
     return moment_visibility(unpack_moments(textureLoad(map, place, 0)), depth);
 }
 
-/// Mean visibility by a bilinear read. `place`: column in texels, texel i at i + 0.5, and row, row j at j; outside of the map
-/// the nearest inside. `wraps`: the last row is followed by the first.
-fn moments_visibility(map: texture_2d<u32>, place: vec2<f32>, wraps: bool, depth: f32) -> f32 {
-    let size = textureDimensions(map);
+/// The four texels of a bilinear read.
+struct Around {
+    /// First and second column.
+    columns: vec2<u32>,
+    /// First and second row.
+    rows: vec2<u32>,
+    /// Share of the second column and of the second row, 0..1.
+    share: vec2<f32>,
+}
+
+/// The texels around `place` of a map of `size` texels. `place`: column in texels, texel i at i + 0.5, and row, row j at j;
+/// outside of the map the nearest inside. `wraps`: the last row is followed by the first.
+fn texels_around(size: vec2<u32>, place: vec2<f32>, wraps: bool) -> Around {
     let last = size - vec2<u32>(1u);
     let greatest = vec2<f32>(f32(last.x), select(f32(last.y), f32(size.y), wraps));
     let at = clamp(place - vec2<f32>(0.5, 0.0), vec2<f32>(0.0), greatest);
     let begin = min(vec2<u32>(at), vec2<u32>(last.x, size.y));
-    let share = at - vec2<f32>(begin);
-    let right = min(begin.x + 1u, last.x);
     let row = select(min(begin.y, last.y), begin.y % size.y, wraps);
     let next = select(min(begin.y + 1u, last.y), (begin.y + 1u) % size.y, wraps);
+    return Around(vec2<u32>(begin.x, min(begin.x + 1u, last.x)), vec2<u32>(row, next), at - vec2<f32>(begin));
+}
+
+/// Mean visibility by a bilinear read. `place` and `wraps` as of `texels_around`.
+fn moments_visibility(map: texture_2d<u32>, place: vec2<f32>, wraps: bool, depth: f32) -> f32 {
+    let around = texels_around(textureDimensions(map), place, wraps);
     let here = mix_moments(
-        unpack_moments(textureLoad(map, vec2<u32>(begin.x, row), 0)),
-        unpack_moments(textureLoad(map, vec2<u32>(right, row), 0)),
-        share.x
+        unpack_moments(textureLoad(map, vec2<u32>(around.columns.x, around.rows.x), 0)),
+        unpack_moments(textureLoad(map, vec2<u32>(around.columns.y, around.rows.x), 0)),
+        around.share.x
     );
     let beside = mix_moments(
-        unpack_moments(textureLoad(map, vec2<u32>(begin.x, next), 0)),
-        unpack_moments(textureLoad(map, vec2<u32>(right, next), 0)),
-        share.x
+        unpack_moments(textureLoad(map, vec2<u32>(around.columns.x, around.rows.y), 0)),
+        unpack_moments(textureLoad(map, vec2<u32>(around.columns.y, around.rows.y), 0)),
+        around.share.x
     );
-    return moment_visibility(mix_moments(here, beside, share.y), depth);
+    return moment_visibility(mix_moments(here, beside, around.share.y), depth);
+}
+
+/// Mean of visibility times the fall-off of one `color` by a read of the texel at `place`: column and row. `colors`: how
+/// many colours the map has, a layer each; the mean fall-off of all is the layer behind them.
+fn moments_color_nearest(
+    map: texture_2d_array<u32>, place: vec2<u32>, color: u32, colors: u32, depth: f32
+) -> f32 {
+    let falloff = bitcast<vec4<f32>>(textureLoad(map, place, colors, 0))[color];
+    return clamp(falloff, 0.0, 1.0) * moment_visibility(unpack_moments(textureLoad(map, place, color, 0)), depth);
+}
+
+/// The same by a bilinear read, `place` and `wraps` as of `texels_around`. Fall-off times moments is what is interpolated,
+/// the mean of both over light rays, so that each texel's moments count as much as light falls on it.
+fn moments_color(
+    map: texture_2d_array<u32>, place: vec2<f32>, wraps: bool, color: u32, colors: u32, depth: f32
+) -> f32 {
+    let around = texels_around(textureDimensions(map), place, wraps);
+    let a = vec2<u32>(around.columns.x, around.rows.x);
+    let b = vec2<u32>(around.columns.y, around.rows.x);
+    let c = vec2<u32>(around.columns.x, around.rows.y);
+    let d = vec2<u32>(around.columns.y, around.rows.y);
+    let falloff = vec4<f32>(
+        bitcast<vec4<f32>>(textureLoad(map, a, colors, 0))[color],
+        bitcast<vec4<f32>>(textureLoad(map, b, colors, 0))[color],
+        bitcast<vec4<f32>>(textureLoad(map, c, colors, 0))[color],
+        bitcast<vec4<f32>>(textureLoad(map, d, colors, 0))[color]
+    );
+    let columns = vec2<f32>(1.0 - around.share.x, around.share.x);
+    let shares = vec4<f32>(columns * (1.0 - around.share.y), columns * around.share.y);
+    let parts = shares * clamp(falloff, vec4<f32>(0.0), vec4<f32>(1.0));
+    let mean = dot(parts, vec4<f32>(1.0));
+    // Where no light falls any moments do.
+    let weights = parts / max(mean, 1e-30);
+    let at_a = unpack_moments(textureLoad(map, a, color, 0));
+    let at_b = unpack_moments(textureLoad(map, b, color, 0));
+    let at_c = unpack_moments(textureLoad(map, c, color, 0));
+    let at_d = unpack_moments(textureLoad(map, d, color, 0));
+    let mixed = Moments(
+        weights.x * at_a.low + weights.y * at_b.low + weights.z * at_c.low + weights.w * at_d.low,
+        weights.x * at_a.high + weights.y * at_b.high + weights.z * at_c.high + weights.w * at_d.high
+    );
+    return min(mean, 1.0) * moment_visibility(mixed, depth);
 }

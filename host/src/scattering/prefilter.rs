@@ -15,7 +15,7 @@ pub enum Visibility {
     /// Fourier bases: any light, any rows; edges as soft as the bases are few.
     #[default]
     Fourier,
-    /// Six moments: the least memory of the soft ones; a plain directional light over epipolar rows.
+    /// Six moments: the least memory of the soft ones; any light, any rows in one region.
     Moments,
     /// Rank queries: exact for depths of so many bits, 8 to 12; any light, any rows of at most 2048 columns in one region.
     Rank {
@@ -23,7 +23,7 @@ pub enum Visibility {
         bits: u32,
     },
     /// A wavelet matrix: exact as rank queries of the same 8, 10 or 12 bits, in about a fifth of their memory, for plain
-    /// means ([`Weighting::Average`]) only; more reads.
+    /// means ([`Weighting::Average`]) over the epipolar rows of a plain directional light only; more reads.
     Wavelet {
         /// Bits of a depth, an even number.
         bits: u32,
@@ -59,8 +59,8 @@ impl Settings {
             return Ok(());
         }
         let method = self.visibility.name();
-        let plain = matches!(self.visibility, Visibility::Moments | Visibility::Wavelet { .. });
-        if plain && (self.light.colors().is_some() || self.light.local()) {
+        let wavelet = matches!(self.visibility, Visibility::Wavelet { .. });
+        if wavelet && (self.light.colors().is_some() || self.light.local()) {
             return Err(SettingsError::Visibility { method, reason: "a plain directional light" });
         }
         if self.regions > 1 {
@@ -120,6 +120,13 @@ impl Settings {
         }
     }
 
+    /// What the callback `scattering/column_weights` reads of the settings.
+    fn weighing_definitions(&self, definitions: Definitions, projective: bool) -> Definitions {
+        let definitions = self.average(definitions);
+        let definitions = if projective { definitions.flag("PROJECTIVE") } else { definitions };
+        self.light.color_definitions(self.light.local_definitions(definitions))
+    }
+
     fn average(&self, definitions: Definitions) -> Definitions {
         if self.weighting == Weighting::Average { definitions.flag("AVERAGE") } else { definitions }
     }
@@ -165,11 +172,19 @@ impl Prefilter {
                     [height, chunks, settings.regions],
                 )
             }
-            Visibility::Moments => (
-                compute("scattering/filter_moments", settings.average(Definitions::new()))?,
-                vec![("moments", flat([width, height], TextureFormat::Rgba32Uint))],
-                [1, height, 1],
-            ),
+            Visibility::Moments => {
+                let definitions = settings.weighing_definitions(Definitions::new(), projective);
+                let format = TextureFormat::Rgba32Uint;
+                let moments = match settings.light.colors() {
+                    Some(colors) => Texture::array(gpu, [width, height, colors + 1], format, usage),
+                    None => flat([width, height], format),
+                };
+                (
+                    compute("scattering/filter_moments", definitions)?,
+                    vec![("moments", moments)],
+                    [1, height, 1],
+                )
+            }
             Visibility::Rank { bits } => {
                 let definitions = settings.average(Definitions::new()).set("RANK", bits as i32);
                 let blocks = width.div_ceil(32);
@@ -184,9 +199,7 @@ impl Prefilter {
                 ];
                 let pass = if let Some(weight_bits) = weight_bits {
                     let definitions = settings.weight_definitions(definitions, Some(weight_bits));
-                    let definitions = if projective { definitions.flag("PROJECTIVE") } else { definitions };
-                    let definitions = settings.light.local_definitions(definitions);
-                    let definitions = settings.light.color_definitions(definitions);
+                    let definitions = settings.weighing_definitions(definitions, projective);
                     let layers = weight_layers(settings.light.colors(), weight_bits);
                     let size = [blocks, height, layers];
                     let weights = Texture::array(gpu, size, TextureFormat::Rgba32Uint, usage);

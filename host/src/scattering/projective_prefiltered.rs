@@ -48,7 +48,7 @@ impl ProjectivePrefiltered {
         let settings = Settings { map: [width, height], ..settings };
         settings.validate(gpu)?;
         check_size(gpu, "a picture", viewport)?;
-        if matches!(settings.visibility, Visibility::Moments | Visibility::Wavelet { .. }) {
+        if matches!(settings.visibility, Visibility::Wavelet { .. }) {
             let method = settings.visibility.name();
             return Err(SettingsError::Visibility { method, reason: "epipolar rows" }.into());
         }

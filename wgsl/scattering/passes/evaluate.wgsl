@@ -9,7 +9,7 @@
 // definition RANK: exact visibility by rank queries, bits of a depth as in `rank`. Not with REGIONS.
 // definition WEIGHT_BITS: bits of a weight, as in `rank_weights`; with RANK and COLORS.
 // definition WAVELET: by the wavelet matrix of `wavelet`; with RANK and AVERAGE.
-// definition MOMENTS: visibility from what `filter_moments` stores. Not with COLORS or REGIONS.
+// definition MOMENTS: visibility from what `filter_moments` stores. Not with REGIONS.
 // definition COLORS: 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
 // definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
 // definition PER_POINT: EPIPOLE_MARCH looks up every step by itself; needed with COLORS or SHADOW_ARRAY.
@@ -39,7 +39,7 @@
 // binding rank_planes: the same, rgba32uint.
 // binding rank_weights: the same, rgba32uint; with RANK and WEIGHT_BITS only.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
-// binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
+// binding moments: what `filter_moments` makes, rgba32uint, with COLORS an array; with MOMENTS only.
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
-// summary: In-scattered radiance of every pixel around a spot or point light, from filtered bases or rank queries.
+// summary: In-scattered radiance of every pixel around a spot or point light, from filtered bases, moments or rank queries.
 // source: thesis 4.3.1 to 4.3.3, Eq. 4.6 and 4.9; V. Pegoraro and S. Parker, "An analytical solution to single scattering in homogeneous participating media" (2009).
 // note: Texel i of the bases holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
 // note: Around the light's place in the picture (and its antipode's) rays cover only a few texels and the light
@@ -7,9 +7,10 @@
 // note: texels, very short rays included, blended in without a seam.
 // note: Around a spot or point light the mean of visibility times fall-off is taken out of the airlight integral, as the
 // note: mean visibility is in Eq. 4.2; the columns, linear in the angle at the light, hold the fall-off with distance.
-// definition BASES: number M of bases, as in the filter; without RANK.
+// definition BASES: number M of bases, as in the filter; without RANK and MOMENTS.
 // definition RANK: exact visibility by rank queries, bits of a depth as in `rank_weights`.
 // definition WEIGHT_BITS: bits of a weight, as in `rank_weights`; with RANK.
+// definition MOMENTS: visibility from what `filter_moments` stores.
 // definition COLORS: 1 for the fall-off of a spot, 3 with LIGHT_TEXTURE, as in the filter.
 // definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
 // definition SHADOW_ARRAY: EPIPOLE_MARCH goes through the shadow maps of several views.
@@ -29,13 +30,14 @@
 // binding shadow_views: the views; only with EPIPOLE_MARCH and SHADOW_ARRAY.
 // binding light_texture: linear RGB 0..1 over the whole shadow map; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
 // binding light_sampler: linear, clamped to the edge; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
-// binding bases: filtered bases, M/4 layers, or what the filter makes with COLORS, rgba8unorm or rgba16float; without RANK.
+// binding bases: filtered bases, M/4 layers, or what the filter makes with COLORS, rgba8unorm or rgba16float; without RANK and MOMENTS.
 // binding rank_cells: what `rank_weights` makes, rg32uint, with LIGHT_TEXTURE rgba32uint; with RANK only.
 // binding rank_starts: the same, r32uint; with RANK only.
 // binding rank_planes: the same, rgba32uint; with RANK only.
 // binding rank_weights: the same, rgba32uint; with RANK only.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
-// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST and RANK.
+// binding moments: what `filter_moments` makes, rgba32uint, with COLORS an array; with MOMENTS only.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST, RANK and MOMENTS.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
 #import airlight::core::camera::{Camera, perspective_ray, ndc_from_pixel}

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
-// summary: In-scattered radiance of every pixel from filtered bases or rank queries over projective rows, for cameras of any kind.
+// summary: In-scattered radiance of every pixel from filtered bases, moments or rank queries over projective rows, for cameras of any kind.
 // source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
 // note: Texel i of the bases holds the mean over the texels 0 .. i, so that a ray of s texels is read at s - 1/2.
 // note: An orthographic camera needs NEAR_PLANE: its rays do not begin at the start of their rows.
-// definition BASES: number M of bases, as in the filter; without RANK.
+// definition BASES: number M of bases, as in the filter; without RANK and MOMENTS.
 // definition RANK: exact visibility by rank queries, bits of a depth as in `rank_weights`. Not with REGIONS.
 // definition WEIGHT_BITS: bits of a weight, as in `rank_weights`; with RANK.
+// definition MOMENTS: visibility from what `filter_moments` stores. Not with REGIONS.
 // definition LANCZOS: window the coefficients against ringing; for M of 8 and more.
 // definition AVERAGE: the bases are plain means.
 // definition NEAREST: the nearest texel of the bases instead of a bilinear blend; no sampler.
@@ -16,13 +17,14 @@
 // binding medium: the medium.
 // binding rows: the projective rows.
 // binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
-// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float; without RANK.
+// binding bases: filtered bases, M/4 layers, rgba8unorm or rgba16float; without RANK and MOMENTS.
 // binding rank_cells: what `rank_weights` makes, rg32uint; with RANK only.
 // binding rank_starts: the same, r32uint; with RANK only.
 // binding rank_planes: the same, rgba32uint; with RANK only.
 // binding rank_weights: the same, rgba32uint; with RANK only.
 // binding rectified: the rectified map, of which only the size is read; with RANK only.
-// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST and RANK.
+// binding moments: what `filter_moments` makes, rgba32uint; with MOMENTS only.
+// binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST, RANK and MOMENTS.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, distance_from_depth}

@@ -103,27 +103,27 @@ fn methods(flags: &Options) -> Vec<Rule> {
     let moments = flags.method == MethodSpelling::Moments;
     let wavelet = flags.method == MethodSpelling::Wavelet;
     let exact = wavelet || flags.method == MethodSpelling::Rank;
-    let (other, plain) = (exact || moments, wavelet || moments);
+    let other = exact || moments;
     let rank = matches!(flags.visibility(), Visibility::Rank { .. } | Visibility::Wavelet { .. });
     const BASES: &str = "it is of Fourier bases: leave it out, or take --method fourier";
     const EPIPOLAR: &str =
-        "moments and wavelet matrices are of epipolar rows: leave it out, or take --method rank or fourier";
+        "wavelet matrices are of epipolar rows: leave it out, or take --method rank or fourier";
     vec![
         (
-            plain && (flags.local() || flags.light_texture.is_some()),
+            wavelet && (flags.local() || flags.light_texture.is_some()),
             "--method",
-            "`moments` and `wavelet` are for directional lights without --light-texture: take auto",
+            "`wavelet` is for directional lights without --light-texture: take auto",
         ),
         (
-            plain && flags.camera == Projection::Orthographic,
+            wavelet && flags.camera == Projection::Orthographic,
             "--method",
-            "`moments` and `wavelet` need a perspective camera: take auto",
+            "`wavelet` needs a perspective camera: take auto",
         ),
         (other && flags.bases.is_some(), "--bases", BASES),
         (other && flags.half, "--half", BASES),
         (other && flags.regions > 1, "--regions", BASES),
-        (plain && flags.splits.is_some(), "--splits", EPIPOLAR),
-        (plain && flags.rectification == RectificationSpelling::Projective, "--rectification", EPIPOLAR),
+        (wavelet && flags.splits.is_some(), "--splits", EPIPOLAR),
+        (wavelet && flags.rectification == RectificationSpelling::Projective, "--rectification", EPIPOLAR),
         (
             flags.bits.is_some() && !rank,
             "--bits",

@@ -180,7 +180,7 @@ pub struct Options {
     /// Bits of a depth for rank queries, 8 to 12, and wavelet matrices, 8, 10 or 12 [default: 12].
     #[arg(long, value_name = "B", value_parser = clap::value_parser!(u32).range(8..=12), allow_hyphen_values = true)]
     pub bits: Option<u32>,
-    /// Which rows the shadow map is resampled along; those of --method moments, rank and wavelet are epipolar.
+    /// Which rows the shadow map is resampled along; those of --method wavelet are epipolar.
     #[arg(long, value_enum, default_value = "auto")]
     pub rectification: RectificationSpelling,
     /// Parts that the columns of projective rows are split into, 1 to 4 [default: 3].

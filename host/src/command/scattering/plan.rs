@@ -112,8 +112,9 @@ fn automatic(
     let epipolar = |reason: &str| Plan { rows: Rows::Epipolar, reason: format!("epipolar ({reason})") };
     let visibility = flags.visibility();
     // Rank queries see through a row to its last texel in either rectification: epipolar rows have theirs where the light is.
+    // Moments err alike in both.
     let asked = visibility == Visibility::Fourier || flags.splits.is_some();
-    let level = cameras.iter().any(|camera| camera.projection != 0) && visibility != Visibility::Moments;
+    let level = cameras.iter().any(|camera| camera.projection != 0);
     if (asked || level) && form.plain() && flags.reference == ReferenceSpelling::Bisectrix {
         let mut rows = Vec::new();
         for camera in cameras {
@@ -141,7 +142,7 @@ fn automatic(
     } else if form.shadow_array {
         "cascades are resampled along them only"
     } else if visibility == Visibility::Moments {
-        "moments are of these"
+        "moments need no others for a perspective camera"
     } else if !asked {
         "rank queries need no others for a perspective camera"
     } else {
