@@ -28,6 +28,7 @@ const PAIRS_PER_THREAD: u32 = PAIRS / THREADS;
 /// Words of `counts`: pairs of values of 12 bits and, behind SUMS of them, the texels of each thread's values.
 const COUNTS: u32 = 3072u;
 const SUMS: u32 = 2048u;
+const EIGHTS: u32 = THREADS / 8u;
 /// Stands for the texel beyond the last of a row.
 const NONE: u32 = 0xffffu;
 
@@ -76,9 +77,21 @@ fn sort_row(thread: u32, row: u32, columns: u32, rankers: u32) {
     }
     atomicStore(&counts[SUMS + thread], sum);
     workgroupBarrier();
+    // Sums of eight threads each, then what is before a thread of eights and of single ones.
+    if thread < EIGHTS {
+        var eight = 0u;
+        for (var one = 0u; one < 8u; one++) {
+            eight += atomicLoad(&counts[SUMS + 8u * thread + one]);
+        }
+        atomicStore(&counts[SUMS + THREADS + thread], eight);
+    }
+    workgroupBarrier();
     var start = 0u;
-    for (var before = 0u; before < THREADS; before++) {
-        start += select(0u, atomicLoad(&counts[SUMS + before]), before < thread);
+    for (var before = 0u; before < EIGHTS; before++) {
+        start += select(0u, atomicLoad(&counts[SUMS + THREADS + before]), before < thread / 8u);
+    }
+    for (var before = 0u; before < 8u; before++) {
+        start += select(0u, atomicLoad(&counts[SUMS + (thread & ~7u) + before]), before < (thread & 7u));
     }
     for (var pair = thread * PAIRS_PER_THREAD; pair < (thread + 1u) * PAIRS_PER_THREAD; pair++) {
         let both = atomicLoad(&counts[pair]);
