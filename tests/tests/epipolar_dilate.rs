@@ -7,6 +7,8 @@
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/shadow_maps.rs"]
+mod shadow_maps;
 
 use airlight::Texture;
 use airlight::core::{Camera, DepthRange, Light, OrthographicView, View};
@@ -18,7 +20,7 @@ use airlight_tests::parallel;
 use airlight_tests::reference::stylize as reference;
 use glam::{DMat4, DVec3, DVec4, Vec2, Vec3};
 use gpu::{Random, gpu, shaders};
-use wgpu::TextureFormat::R32Float;
+use shadow_maps::{random_map, texture};
 
 const OPERATORS: [Operator; 4] =
     [Operator::Dilation, Operator::Erosion, Operator::Closing, Operator::Opening];
@@ -53,23 +55,6 @@ fn morph_with(morphology: &EpipolarMorphology, epipole: &Epipole, map: &Texture)
 fn morph(settings: EpipolarSettings, epipole: &Epipole, map: &Texture) -> Vec<f32> {
     let [width, height, _] = map.size();
     morph_with(&built(settings, [width, height]), epipole, map)
-}
-
-fn texture(size: [u32; 2], values: &[f32]) -> Texture {
-    gpu::texture(size, R32Float, values)
-}
-
-/// Depths at random, a part of them empty, some not finite.
-fn random_map(random: &mut Random, [width, height]: [u32; 2], far: f32) -> Vec<f32> {
-    let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
-    let empty = random.between(0.0, 0.9);
-    (0..width * height)
-        .map(|_| match random.unit() {
-            x if x < 0.02 => wild[random.below(3)],
-            x if x < empty => far,
-            _ => random.unit() as f32,
-        })
-        .collect()
 }
 
 /// Every kind of epipole: inside, exactly on a texel or a corner, outside, far, at infinity, behind the light.

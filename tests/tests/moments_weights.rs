@@ -5,6 +5,8 @@
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/given_weights.rs"]
+mod given_weights;
 #[path = "support/gpu.rs"]
 mod gpu;
 #[path = "support/probing.rs"]
@@ -13,6 +15,7 @@ mod probing;
 use airlight::validate::{Definitions, Library};
 use airlight::{Pass, Shaders, Texture};
 use airlight_tests::reference::scattering as reference;
+use given_weights::GIVEN_WEIGHTS;
 use gpu::{Probe, Random, gpu};
 use probing::hold;
 use wgpu::TextureFormat::{R32Float, Rgba32Float, Rgba32Uint};
@@ -23,22 +26,6 @@ const BIAS: f64 = 1e-5;
 const BLEND: f64 = 0.15;
 /// One step of a stored moment.
 const STEP: f64 = 2.0 / 2_097_151.0;
-
-/// The callback of the tests: fall-off and weight of each column come from a texture.
-const GIVEN_WEIGHTS: &str = "#define_import_path airlight::scattering::column_weights
-@group(#{GROUP}) @binding(1) var given: texture_2d<f32>;
-struct WeightedColumn { row: u32, column: u32, weight: f32 }
-fn weighted_column(row: u32, size: vec2<u32>, first: u32, column: u32) -> WeightedColumn {
-    return WeightedColumn(row, column, textureLoad(given, vec2<u32>(min(column, size.x - 1u), row), 0).w);
-}
-fn next_column(current: WeightedColumn, size: vec2<u32>) -> WeightedColumn {
-    return weighted_column(current.row, size, 0u, current.column + 1u);
-}
-fn falloff_of_column(row: u32, unit: f32) -> vec3<f32> {
-    let size = textureDimensions(given);
-    return textureLoad(given, vec2<u32>(min(u32(unit * f32(size.x)), size.x - 1u), row), 0).xyz;
-}
-";
 
 /// The filter for 1 or 3 colours, with the callback of the tests.
 fn filter(colors: u32) -> Pass {

@@ -4,6 +4,8 @@
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/shadow_maps.rs"]
+mod shadow_maps;
 
 use airlight::Texture;
 use airlight::core::DepthRange;
@@ -11,7 +13,7 @@ use airlight::stylize::{Element, Morphology, MorphologySettings, Operator, Styli
 use airlight_tests::parallel;
 use airlight_tests::reference::stylize as reference;
 use gpu::{Random, gpu, shaders};
-use wgpu::TextureFormat::R32Float;
+use shadow_maps::{random_map, texture};
 
 const OPERATORS: [Operator; 4] =
     [Operator::Dilation, Operator::Erosion, Operator::Closing, Operator::Opening];
@@ -29,23 +31,6 @@ fn morph(settings: MorphologySettings, map: &Texture) -> Vec<f32> {
     morphology.record(&mut encoder, &bound);
     gpu().submit(encoder).unwrap();
     morphology.morphed.read(gpu()).unwrap()
-}
-
-/// Depths at random, a part of them empty, some not finite.
-fn random_map(random: &mut Random, [width, height]: [u32; 2], far: f32) -> Vec<f32> {
-    let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
-    let empty = random.between(0.0, 0.9);
-    (0..width * height)
-        .map(|_| match random.unit() {
-            x if x < 0.02 => wild[random.below(3)],
-            x if x < empty => far,
-            _ => random.unit() as f32,
-        })
-        .collect()
-}
-
-fn texture(size: [u32; 2], values: &[f32]) -> Texture {
-    gpu::texture(size, R32Float, values)
 }
 
 fn reference_of<'a>(

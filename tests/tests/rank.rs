@@ -13,15 +13,15 @@ mod probing;
 mod rank;
 
 use airlight::scattering::{
-    Filtering, LightForm, Prefiltered, ProjectiveMap, ProjectivePrefiltered, Rectification, ScatteringError,
-    Settings, Visibility, Weighting,
+    Filtering, LightForm, Prefiltered, ProjectiveMap, ProjectivePrefiltered, Rectification, Settings,
+    Visibility, Weighting,
 };
 use airlight::{Stage, scenes};
 use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;
 use gpu::{Probe, Random, gpu, shaders};
 use probing::hold;
-use rank::{KINDS, Query, Structure, clear_of_borders, queries, row_of_kind};
+use rank::{KINDS, Query, Structure, clear_of_borders, queries, refusal, row_of_kind};
 use reference::SteppedRow;
 
 /// What it makes of weighted means: a ratio of two weights, each stated to be good to 1e-6, and a few exponentials.
@@ -375,15 +375,6 @@ fn pictures_reach_their_figures() {
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");
-}
-
-/// Why settings are refused.
-fn refusal(settings: Settings) -> String {
-    match Prefiltered::new(gpu(), shaders(), settings, [16, 16]) {
-        Err(ScatteringError::Settings(error)) => error.to_string(),
-        Err(other) => panic!("{settings:?}: {other}"),
-        Ok(_) => panic!("{settings:?} are taken"),
-    }
 }
 
 #[test]

@@ -5,6 +5,8 @@
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/given_weights.rs"]
+mod given_weights;
 #[path = "support/gpu.rs"]
 mod gpu;
 #[path = "support/probing.rs"]
@@ -15,6 +17,7 @@ mod rank;
 use airlight::validate::{Definitions, Library};
 use airlight::{Buffer, Pass, Shaders, Texture};
 use airlight_tests::reference::scattering::{SteppedRow, depth_step};
+use given_weights::GIVEN_WEIGHTS;
 use gpu::{Random, gpu};
 use rank::{KINDS, row_of_kind};
 use wgpu::TextureFormat::{R32Float, R32Uint, Rg32Uint, Rgba32Float, Rgba32Uint};
@@ -24,22 +27,6 @@ use wgpu::TextureUsages;
 const BITS: u32 = 12;
 /// What f32 makes of sums of up to 2048 weights, and of their difference.
 const ROUNDING: f64 = 1e-5;
-
-/// The callback of the tests: fall-off and weight of each column come from a texture.
-const GIVEN_WEIGHTS: &str = "#define_import_path airlight::scattering::column_weights
-@group(#{GROUP}) @binding(1) var given: texture_2d<f32>;
-struct WeightedColumn { row: u32, column: u32, weight: f32 }
-fn weighted_column(row: u32, size: vec2<u32>, first: u32, column: u32) -> WeightedColumn {
-    return WeightedColumn(row, column, textureLoad(given, vec2<u32>(min(column, size.x - 1u), row), 0).w);
-}
-fn next_column(current: WeightedColumn, size: vec2<u32>) -> WeightedColumn {
-    return weighted_column(current.row, size, 0u, current.column + 1u);
-}
-fn falloff_of_column(row: u32, unit: f32) -> vec3<f32> {
-    let size = textureDimensions(given);
-    return textureLoad(given, vec2<u32>(min(u32(unit * f32(size.x)), size.x - 1u), row), 0).xyz;
-}
-";
 
 const QUERY: &str = "#import airlight::scattering::visibility_rank_weights::rank_means
 @group(#{GROUP}) @binding(0) var<storage, read> inputs: array<f32>;

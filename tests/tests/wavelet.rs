@@ -13,12 +13,12 @@ mod probing;
 mod rank;
 
 use airlight::scattering::{
-    Filtering, LightForm, Prefiltered, ProjectiveMap, ProjectivePrefiltered, ScatteringError, Settings,
-    Start, Visibility, Weighting,
+    Filtering, LightForm, Prefiltered, ProjectiveMap, ProjectivePrefiltered, Settings, Start, Visibility,
+    Weighting,
 };
 use airlight_tests::reference::scattering::depth_step;
 use gpu::{Random, gpu, shaders};
-use rank::{KINDS, Structure, row_of_kind};
+use rank::{KINDS, Structure, refusal, row_of_kind};
 
 fn wavelet(bits: u32) -> Settings {
     let visibility = Visibility::Wavelet { bits };
@@ -135,15 +135,6 @@ fn it_takes_less_than_a_tenth_of_32_bases() {
         let own = memory(wavelet(bits));
         assert_eq!(own / (1024.0 * 1024.0), f64::from(bits) / 4.0, "bytes a texel");
         assert!(own <= 0.1 * bases);
-    }
-}
-
-/// Why settings are refused.
-fn refusal(settings: Settings) -> String {
-    match Prefiltered::new(gpu(), shaders(), settings, [16, 16]) {
-        Err(ScatteringError::Settings(error)) => error.to_string(),
-        Err(other) => panic!("{settings:?}: {other}"),
-        Ok(_) => panic!("{settings:?} are taken"),
     }
 }
 

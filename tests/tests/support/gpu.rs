@@ -308,13 +308,13 @@ pub fn small_tree() -> TestScene {
     }
 }
 
-/// The exact f64 picture of a scene over the rectified map that the GPU made.
-pub fn exact_picture(
+/// Gives the reference's view of a scene, and the rectification that the GPU made.
+fn with_scene<T>(
     stage: &Stage,
     view: &PerspectiveView,
     map: &Rectification,
-    stride: usize,
-) -> reference::Picture {
+    of: impl FnOnce(&reference::Scene<'_>, &reference::Rectification) -> T,
+) -> T {
     let [width, height, _] = stage.pictures.depth.size();
     let camera = reference_camera(view, [width, height]);
     let rectification = read_back(&camera, stage.light.direction, stage.medium.distance_limit, map);
@@ -327,7 +327,20 @@ pub fn exact_picture(
         width: width as usize,
         height: height as usize,
     };
-    reference::picture(&scene, &rectification, &map.rectified.read(gpu()).unwrap(), stride)
+    of(&scene, &rectification)
+}
+
+/// The exact f64 picture of a scene over the rectified map that the GPU made.
+pub fn exact_picture(
+    stage: &Stage,
+    view: &PerspectiveView,
+    map: &Rectification,
+    stride: usize,
+) -> reference::Picture {
+    let rectified = map.rectified.read(gpu()).unwrap();
+    with_scene(stage, view, map, |scene, rectification| {
+        reference::picture(scene, rectification, &rectified, stride)
+    })
 }
 
 /// The view ray of a pixel.
@@ -361,25 +374,16 @@ pub fn of_pixels<T: Send>(
     map: &Rectification,
     of: impl Fn(&reference::Rectification, &PixelRay) -> T + Sync,
 ) -> Vec<T> {
-    let [width, height, _] = stage.pictures.depth.size();
-    let camera = reference_camera(view, [width, height]);
-    let rectification = read_back(&camera, stage.light.direction, stage.medium.distance_limit, map);
-    let depth = stage.pictures.depth.read(gpu()).unwrap();
-    let scene = reference::Scene {
-        camera: &camera,
-        light: reference_light(&stage.light),
-        medium: reference_medium(&stage.medium),
-        depth: &depth,
-        width: width as usize,
-        height: height as usize,
-    };
-    let pixel = |x: usize, y: usize| {
-        let (direction, distance) = scene.view_ray(x, y);
-        let (first, second, share) = rectification.rows(rectification.frame.polar_direction(direction).phi);
-        of(&rectification, &PixelRay { direction, distance, rows: [first, second], share })
-    };
-    let row = |y: usize| (0..width as usize).map(|x| pixel(x, y)).collect::<Vec<_>>();
-    airlight_tests::parallel::rows(height as usize, row).into_iter().flatten().collect()
+    with_scene(stage, view, map, |scene, rectification| {
+        let pixel = |x: usize, y: usize| {
+            let (direction, distance) = scene.view_ray(x, y);
+            let (first, second, share) =
+                rectification.rows(rectification.frame.polar_direction(direction).phi);
+            of(rectification, &PixelRay { direction, distance, rows: [first, second], share })
+        };
+        let row = |y: usize| (0..scene.width).map(|x| pixel(x, y)).collect::<Vec<_>>();
+        airlight_tests::parallel::rows(scene.height, row).into_iter().flatten().collect()
+    })
 }
 
 /// A storage texture of one layer with values.

@@ -3,7 +3,9 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{self, Random, gpu, shaders};
-use airlight::scattering::{Inputs, Medium, Prefiltered, PrefilteredBound, Settings, Visibility, Weighting};
+use airlight::scattering::{
+    Inputs, Medium, Prefiltered, PrefilteredBound, ScatteringError, Settings, Visibility, Weighting,
+};
 use airlight::validate::{Definitions, Library};
 use airlight::{Buffer, Pass, Shaders};
 use airlight_tests::linear;
@@ -326,4 +328,13 @@ pub fn hold_counts(seed: u64, of: impl Fn(u32) -> Visibility) {
     );
     assert!(partly > asked / 5 && ties > asked / 3, "the cases are not varied enough");
     crate::probing::hold("visibility from counts", worst, ROUNDING);
+}
+
+/// Why settings are refused.
+pub fn refusal(settings: Settings) -> String {
+    match Prefiltered::new(gpu(), shaders(), settings, [16, 16]) {
+        Err(ScatteringError::Settings(error)) => error.to_string(),
+        Err(other) => panic!("{settings:?}: {other}"),
+        Ok(_) => panic!("{settings:?} are taken"),
+    }
 }
