@@ -91,6 +91,7 @@ modules! {
     core::phase [],
     core::picture [],
     core::prefix_sum [],
+    core::sort [],
     core::jitter ["core::finite"],
     core::noise ["core::finite"],
     core::ray_depth ["core::camera"],
@@ -133,7 +134,7 @@ modules! {
 
 passes! {
     core/raster,
-    core/scan,
+    core/scan, core/sort,
     core/tonemap,
     core/resolve_depth,
     scattering/slices,
