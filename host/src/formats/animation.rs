@@ -91,7 +91,7 @@ mod tests {
         let path = folder.path().join("a.png");
         for channels in [1, 3, 4] {
             for count in [1, 5] {
-                let frame = |number: u8| (0..3 * 2 * channels).map(|i| i * 7 + number * 40).collect();
+                let frame = |number: u8| (0..3 * 2 * channels).map(|i| i * 7 + number * 20).collect();
                 let frames: Vec<Vec<u8>> = (0..count).map(frame).collect();
                 write_animation(&path, 3, 2, frames.iter().map(Ok), [1, 24]).expect("written");
                 let found = read(&path);
