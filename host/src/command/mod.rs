@@ -37,6 +37,9 @@ enum Command {
     /// Light shafts around meshes of yours.
     Scattering(scattering::Options),
     /// Light shafts around meshes of yours, their shadows reshaped and their light recoloured.
+    #[command(mut_arg("frame", |frame| frame.help(
+        "Number of the frame, for key frames, the time of holes and --jitter [default: 0]"
+    )))]
     Stylize(Box<stylize::Options>),
     /// Any compute or full-screen pass on arrays of yours, by binding name.
     Run(run::Options),
