@@ -51,7 +51,7 @@ fn operators_take_light_and_leave_surfaces_and_their_shadows() {
         let plain = Run::new(at.path(), "stylize", setup);
         for flag in ["--close-box", "--close-disc", "--close-epipolar", "--extrude"] {
             let mut before = mean(&plain.visibility("scattered"));
-            for width in [5, 15, 61] {
+            for width in [5, 31] {
                 let flags = format!("{setup} {flag} {width}");
                 let run = Run::new(at.path(), "stylize", &flags);
                 let maps = if setup == POINT { "shadow_maps" } else { "shadow_map" };
@@ -99,10 +99,13 @@ fn an_eye_at_infinity_has_parallel_lines() {
     };
     let [plain, direct, rectified] = ["", " --extrude 25", " --extrude 25 --epipolar rectified"].map(lit);
     assert!(direct < 0.99 * plain && rectified < 0.99 * plain, "{plain} {direct} {rectified}");
-    // Along the view rays, where the eye is no place of the map: there is no line, and nothing changes.
+    // Where the camera looks along the light what is extruded is hidden behind the blocker.
     let ahead = "--camera orthographic --eye 0,6,0.001 --target 0,0,0 --light directional:0,90 --height 9";
-    let run = |flags: &str| Run::new(at.path(), "stylize", &format!("{ahead}{flags}"));
-    assert!(run("").buffers["scattered"].1.len() == run(" --extrude 9").buffers["scattered"].1.len());
+    let lit = |flags: &str| {
+        mean(&Run::new(at.path(), "stylize", &format!("{ahead}{flags}")).visibility("scattered"))
+    };
+    let [plain, extruded] = ["", " --extrude 25"].map(lit);
+    assert!((extruded / plain - 1.0).abs() < 0.01, "{plain} {extruded}");
 }
 
 #[test]
@@ -127,7 +130,8 @@ fn holes_let_light_in() {
             assert!(lit > before, "{flags}: not lighter");
             before = lit;
         }
-        assert!((before - 1.0).abs() < 1e-3, "{setup}: everything is a hole, and {before} is lit");
+        // Without a shadow the whole air is lit, of a spot all of its cone.
+        assert!(setup == SPOT || (before - 1.0).abs() < 1e-3, "{setup}: all is hole, and {before} is lit");
     }
 }
 
@@ -162,10 +166,11 @@ fn one_object_has_the_holes_and_the_rest_has_none() {
         let both = run(&format!("density=1 {all}"));
         assert!(both[&stylized].1.iter().all(|depth| *depth == 1.0), "{setup}: something is left");
         // What is left without the plate is the room, and the other way round; the nearer of both was drawn.
-        let pairs = plate[&stylized].1.iter().zip(&room[&stylized].1).zip(drawn);
-        assert!(pairs.clone().all(|((room, plate), drawn)| room.min(*plate) == *drawn), "{setup}");
-        let shadows = pairs.filter(|((room, plate), _)| **plate < 1.0 && **room < 1.0).count();
-        assert!(shadows > 100, "{setup}: the plate is over {shadows} texels of the room only");
+        let mut pairs = plate[&stylized].1.iter().zip(&room[&stylized].1).zip(drawn);
+        assert!(pairs.all(|((room, plate), drawn)| room.min(*plate) == *drawn), "{setup}");
+        let blocked = |part: &[f32]| part.iter().filter(|depth| **depth < 1.0).count();
+        let [room, plate] = [&plate, &room].map(|left| blocked(&left[&stylized].1));
+        assert!(room > 500 && plate > 500, "{setup}: {room} texels of the room, {plate} of the plate");
         assert!(both["surface"] == none["surface"], "{setup}: surfaces changed");
         let part = run("size=0.3,density=0.4 --holes-on plate.obj");
         let whole = run("size=0.3,density=0.4");
