@@ -51,7 +51,7 @@ fn operators_take_light_and_leave_surfaces_and_their_shadows() {
         let plain = Run::new(at.path(), "stylize", setup);
         for flag in ["--close-box", "--close-disc", "--close-epipolar", "--extrude"] {
             let mut before = mean(&plain.visibility("scattered"));
-            for width in [5, 31] {
+            for width in [5, 61] {
                 let flags = format!("{setup} {flag} {width}");
                 let run = Run::new(at.path(), "stylize", &flags);
                 let maps = if setup == POINT { "shadow_maps" } else { "shadow_map" };

@@ -81,6 +81,14 @@ fn jitter_and_time_run_through_a_sequence() {
     assert!(
         pixels(at, "a.0008.png") == pixels(at, "b.png") && pixels(at, "a.0007.png") != pixels(at, "b.png")
     );
+    // Holes of constant widths, whose passes serve all frames.
+    let wind = format!("{SUN} --holes size=0:0.3/9:0.6,density=0.3,distance=0.05 --close-box 3 --rate 8");
+    draw(at, &format!("{wind} --frames 4..6"), "w.png");
+    for frame in 4..=6 {
+        draw(at, &format!("{wind} --frame {frame}"), "v.png");
+        assert!(pixels(at, &format!("w.{frame:04}.png")) == pixels(at, "v.png"), "holes of frame {frame}");
+    }
+    assert!(pixels(at, "w.0004.png") != pixels(at, "w.0006.png"), "no wind");
     // Still holes stand still; time with key frames runs by these.
     draw(at, &format!("{SUN} --holes size=0.4,density=0.3 --frames 0..1"), "c.png");
     assert!(pixels(at, "c.0000.png") == pixels(at, "c.0001.png"));
