@@ -200,6 +200,38 @@ impl Options {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Typed {
+        #[command(flatten)]
+        options: Options,
+    }
+
+    #[test]
+    fn operators_follow_each_other_in_one_order_whatever_was_typed_first() {
+        let typed =
+            "x --mesh a.obj --out x.png --extrude 3 --close-epipolar 5 --close-disc 7 --close-box 0:9,4:15";
+        let options = Typed::parse_from(typed.split(' ')).options;
+        let width = |texels| Width::new(texels).unwrap();
+        let closing = |element, texels| ShadowOperator::Across {
+            operator: Operator::Closing,
+            element,
+            width: width(texels),
+        };
+        let along = |operator, texels| {
+            let form = Form::Direct;
+            ShadowOperator::Along { operator, form, width: width(texels) }
+        };
+        let expected = [
+            closing(Element::Box, 13),
+            closing(Element::Disc, 7),
+            along(Operator::Closing, 5),
+            along(Operator::Dilation, 3),
+        ];
+        // Between 9 and 15 lies 12.
+        assert_eq!(options.operators(2.0), expected);
+    }
 
     #[test]
     fn widths_and_pixels_are_read_and_nonsense_refused() {

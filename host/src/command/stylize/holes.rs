@@ -182,7 +182,10 @@ mod tests {
     fn holes_are_read_and_nonsense_refused() {
         let read = holes("size=0:0.2/48:0.6,density=0.25,octaves=2,persistence=0.4,seed=7,turn=90").unwrap();
         let at = read.at(24.0);
-        assert!((at.size - 0.4).abs() < 1e-6 && (at.motion.turn - 1.570_796).abs() < 1e-5, "{at:?}");
+        assert!(
+            (at.size - 0.4).abs() < 1e-6 && (at.motion.turn - std::f32::consts::FRAC_PI_2).abs() < 1e-5,
+            "{at:?}"
+        );
         assert_eq!((at.density, at.octaves, at.persistence, at.seed), (0.25, 2, 0.4, 7));
         assert_eq!(holes("seed=1").unwrap(), KeyedHoles::default());
         assert!(read.moves() && !holes("size=1").unwrap().moves() && holes("distance=0.1").unwrap().moves());
