@@ -4,6 +4,7 @@
 use crate::core::{CameraError, LightError};
 use crate::scattering::ScatteringError;
 use crate::scenes::SceneError;
+use crate::stylize::StylizeError;
 use crate::{GpuError, PassError, StageError};
 use std::fmt::Display;
 use std::path::Path;
@@ -116,6 +117,17 @@ impl From<crate::scattering::SettingsError> for CommandError {
             },
         };
         Self::misuse(flag, error)
+    }
+}
+
+impl From<StylizeError> for CommandError {
+    fn from(error: StylizeError) -> Self {
+        match error {
+            StylizeError::Holes(_) => Self::misuse("--holes", error),
+            StylizeError::Size { .. } => Self::misuse("--shadow-map", error),
+            StylizeError::Epipole(_) => Self::misuse("--close-epipolar, --extrude", error),
+            _ => Self::failure(error),
+        }
     }
 }
 

@@ -10,6 +10,7 @@ mod parse;
 mod progress;
 mod run;
 mod scattering;
+mod stylize;
 mod text;
 
 pub use bench::baselines;
@@ -35,6 +36,11 @@ enum Command {
     Gallery(gallery::Options),
     /// Light shafts around meshes of yours.
     Scattering(scattering::Options),
+    /// Light shafts around meshes of yours, their shadows reshaped and their light recoloured.
+    #[command(mut_arg("frame", |frame| frame.help(
+        "Number of the frame, for key frames, the time of holes and --jitter [default: 0]"
+    )))]
+    Stylize(Box<stylize::Options>),
     /// Any compute or full-screen pass on arrays of yours, by binding name.
     Run(run::Options),
     /// Ratios against baselines, interleaved, with the error of both sides.
@@ -52,6 +58,7 @@ pub fn main() -> ExitCode {
     let done = match arguments.command {
         Command::Gallery(options) => gallery::run(&options, quiet),
         Command::Scattering(options) => scattering::run(&options, quiet),
+        Command::Stylize(options) => stylize::run(&options, quiet),
         Command::Run(options) => run::run(&options),
         Command::Bench(options) => bench::run(&options, quiet),
         Command::List(options) => list::list(&options),

@@ -15,9 +15,9 @@ pub struct Conflict {
     pub problem: &'static str,
 }
 
-/// The first conflict among the flags.
-pub fn find(flags: &Options) -> Option<Conflict> {
-    let rules = camera(flags).into_iter().chain(light(flags)).chain(march(flags));
+/// The first conflict among the flags. `framed`: more than jitter may change with --frame.
+pub fn find(flags: &Options, framed: bool) -> Option<Conflict> {
+    let rules = camera(flags).into_iter().chain(light(flags)).chain(march(flags, framed));
     let rules = rules.chain(methods(flags)).chain(rows(flags));
     rules.into_iter().find(|(refused, ..)| *refused).map(|(_, flag, problem)| Conflict { flag, problem })
 }
@@ -71,7 +71,7 @@ fn light(flags: &Options) -> Vec<Rule> {
     ]
 }
 
-fn march(flags: &Options) -> Vec<Rule> {
+fn march(flags: &Options, framed: bool) -> Vec<Rule> {
     const NO_ROWS: &str = "a march has no rows: leave it out, or take --method fourier";
     let march = flags.method == MethodSpelling::March;
     let jitter = flags.jitter != JitterSpelling::None;
@@ -92,7 +92,7 @@ fn march(flags: &Options) -> Vec<Rule> {
             "only a directional light without --cascades and --light-texture is marched with it: leave it out",
         ),
         (
-            !jitter && flags.frame.is_some(),
+            !jitter && !framed && flags.frame.is_some(),
             "--frame",
             "nothing changes with it: give --jitter gradient or blue-noise as well",
         ),

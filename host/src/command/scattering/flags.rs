@@ -276,11 +276,11 @@ impl Options {
         }
     }
 
-    /// Checks what the flags alone say.
+    /// Checks what the flags alone say. `framed`: more than jitter may change with --frame.
     ///
     /// # Errors
     /// Misuse: a value, or two flags that cannot be meant together.
-    pub fn check(&self) -> Result<(), CommandError> {
+    pub fn check(&self, framed: bool) -> Result<(), CommandError> {
         let refuse = |flag: &str, problem: String| Err(CommandError::misuse(flag, problem));
         let extension = self.out.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         if !matches!(extension.as_str(), "png" | "exr") {
@@ -296,7 +296,8 @@ impl Options {
                 return refuse("--radiance", format!("{radiance} is impossible: 0 to {shown} is possible"));
             }
         }
-        conflicts::find(self).map_or(Ok(()), |conflict| refuse(conflict.flag, conflict.problem.to_owned()))
+        conflicts::find(self, framed)
+            .map_or(Ok(()), |conflict| refuse(conflict.flag, conflict.problem.to_owned()))
     }
 
     /// A directional light with one shadow map and no texture.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What the command writes: the picture, and the buffers on the way to it.
 
+use super::Eye;
 use crate::command::CommandError;
 use crate::core::Tonemap;
 use crate::formats::{Array, ArrayData, create_folder, write_exr, write_npy, write_png};
 use crate::scattering::{ViewPasses, ViewShafts};
-use crate::{Gpu, Shaders, Stage, Texture};
+use crate::{Gpu, Stage, Texture};
 use std::path::Path;
 
 /// Arrays with the names of their files.
@@ -23,7 +24,7 @@ impl Buffers {
     }
 
     /// Reads what lies between inputs and radiance of a view. `prefix`: of the names.
-    pub fn view(&mut self, gpu: &Gpu, prefix: &str, view: &ViewShafts) -> Result<(), CommandError> {
+    fn view(&mut self, gpu: &Gpu, prefix: &str, view: &ViewShafts) -> Result<(), CommandError> {
         let named = |name: &str| format!("{prefix}{name}");
         if let Some(reduced) = &view.reduced {
             self.texture(gpu, &named("reduced_depth"), &reduced.depth)?;
@@ -51,8 +52,38 @@ impl Buffers {
         self.texture(gpu, &named("scattered"), view.scattered())
     }
 
+    /// Reads textures of one size as the layers of one array.
+    pub fn layers(&mut self, gpu: &Gpu, name: &str, textures: &[&Texture]) -> Result<(), CommandError> {
+        let [first, ..] = textures else { return Ok(()) };
+        let [width, height, _] = first.size().map(|side| side as usize);
+        let texels = textures.iter().map(|texture| Ok(texture.read(gpu)?));
+        let texels = texels.collect::<Result<Vec<_>, CommandError>>()?.concat();
+        let mut shape = vec![height, width];
+        if textures.len() > 1 {
+            shape.insert(0, textures.len());
+        }
+        self.arrays.push((name.to_owned(), Array { shape, data: ArrayData::F32(texels) }));
+        Ok(())
+    }
+
+    /// Reads all that lies between the mesh and the picture of an eye. `prefix`: of the names.
+    pub fn eye(
+        &mut self,
+        gpu: &Gpu,
+        prefix: &str,
+        eye: &Eye,
+        view: &ViewShafts,
+        composed: &Texture,
+    ) -> Result<(), CommandError> {
+        self.shadow_maps(gpu, prefix, &eye.stage)?;
+        self.texture(gpu, &format!("{prefix}surface"), &eye.stage.pictures.surface)?;
+        self.texture(gpu, &format!("{prefix}depth"), eye.inputs().depth)?;
+        self.view(gpu, prefix, view)?;
+        self.texture(gpu, &format!("{prefix}composed"), composed)
+    }
+
     /// Reads the shadow maps of a stage that there are.
-    pub fn shadow_maps(&mut self, gpu: &Gpu, prefix: &str, stage: &Stage) -> Result<(), CommandError> {
+    fn shadow_maps(&mut self, gpu: &Gpu, prefix: &str, stage: &Stage) -> Result<(), CommandError> {
         // That of a point light is one empty texel.
         if stage.light.kind != crate::core::POINT {
             self.texture(gpu, &format!("{prefix}shadow_map"), &stage.pictures.shadow_map)?;
@@ -95,8 +126,8 @@ fn array(gpu: &Gpu, texture: &Texture) -> Result<Array, CommandError> {
 /// Writes radiance as .png (tone-mapped) or .exr (linear), by the ending of `path`; pictures of one size side by side.
 pub fn write_pictures(
     gpu: &Gpu,
-    shaders: &Shaders,
-    radiance: &[&Texture],
+    tonemap: &Tonemap,
+    radiance: &[Texture],
     exposure: f32,
     path: &Path,
 ) -> Result<(), CommandError> {
@@ -108,11 +139,20 @@ pub fn write_pictures(
         let pictures = pictures.collect::<Result<Vec<_>, CommandError>>()?;
         write_exr(path, whole, height, &side_by_side(&pictures, height)).map_err(failure)
     } else {
-        let tonemap = Tonemap::new(gpu, shaders)?;
-        let pictures = radiance.iter().map(|texture| Ok(tonemap.run(gpu, texture, exposure)?));
-        let pictures = pictures.collect::<Result<Vec<_>, CommandError>>()?;
-        write_png(path, whole, height, &side_by_side(&pictures, height)).map_err(failure)
+        write_png(path, whole, height, &tone_mapped(gpu, tonemap, radiance, exposure)?).map_err(failure)
     }
+}
+
+/// Radiance as a picture to look at, RGBA of 8 bits; pictures of one size side by side.
+pub fn tone_mapped(
+    gpu: &Gpu,
+    tonemap: &Tonemap,
+    radiance: &[Texture],
+    exposure: f32,
+) -> Result<Vec<u8>, CommandError> {
+    let height = radiance.first().map_or(0, |texture| texture.size()[1]);
+    let pictures = radiance.iter().map(|texture| Ok(tonemap.run(gpu, texture, exposure)?));
+    Ok(side_by_side(&pictures.collect::<Result<Vec<_>, CommandError>>()?, height))
 }
 
 /// The rows of pictures of one size, one after the other.
