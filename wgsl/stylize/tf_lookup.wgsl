@@ -83,13 +83,31 @@ fn picture_angle(camera: Camera, light: Light, ndc: vec2<f32>) -> f32 {
 /// A property of a ray, 0..1. `depth_limit`: metres.
 fn ray_property(property: u32, ray: RayProperties, depth_limit: f32) -> f32 {
     let limit = clamp(depth_limit, 1e-6, 1e15);
-    let turns = ray.picture_angle * 0.15915494309189535;
     var value = ray.visibility;
-    value = select(value, ray.distance / limit, property == LINEAR_DEPTH);
-    value = select(value, acos(clamp(ray.cosine, -1.0, 1.0)) * 0.3183098861837907, property == LIGHT_ANGLE);
-    value = select(value, turns - floor(turns), property == PICTURE_ANGLE);
-    value = select(value, ray.visible_distance / limit, property == VISIBLE_DEPTH);
+    // Branches: angles cost as much as all the rest of a look-up.
+    switch property {
+        case LINEAR_DEPTH: {
+            value = ray.distance / limit;
+        }
+        case LIGHT_ANGLE: {
+            value = acos(clamp(ray.cosine, -1.0, 1.0)) * 0.3183098861837907;
+        }
+        case PICTURE_ANGLE: {
+            let turns = ray.picture_angle * 0.15915494309189535;
+            value = turns - floor(turns);
+        }
+        case VISIBLE_DEPTH: {
+            value = ray.visible_distance / limit;
+        }
+        default: {
+        }
+    }
     return clamp(finite_or(value, 0.0), 0.0, 1.0);
+}
+
+/// Whether the function reads a property.
+fn asks_for(function: TransferFunction, property: u32) -> bool {
+    return function.across == property || function.down == property;
 }
 
 /// Where a ray lies in the function, 0..1 in x and y.
@@ -112,7 +130,10 @@ fn transfer_lookup(map: texture_2d<f32>, map_sampler: sampler, position: vec2<f3
 fn stylized(
     function: TransferFunction, color: vec4<f32>, radiance: vec3<f32>, light_radiance: vec3<f32>, cosine: f32
 ) -> vec3<f32> {
-    let phase = select(ISOTROPIC, henyey_greenstein(cosine, function.g), function.phase == HENYEY_GREENSTEIN);
+    var phase = ISOTROPIC;
+    if function.phase == HENYEY_GREENSTEIN {
+        phase = henyey_greenstein(cosine, function.g);
+    }
     // A constant phase function leaves the colours of REPLACE as they are.
     var tint = vec3<f32>(phase / ISOTROPIC);
     tint = select(tint, clamp(light_radiance, vec3<f32>(0.0), vec3<f32>(1e15)) * phase, function.mode == LIGHT);

@@ -24,8 +24,8 @@ pub use kernel::{Element, Operator, Width};
 pub use morphology::{Disc, Morphology, MorphologyBound, MorphologySettings, Window};
 pub use transfer::{
     Baker, Blend, Color, Constraint, DiffusionLevel, Keyed, Layer, Mode, Phase, PickScene, Place,
-    RayProperty, Restyle, Source, Transfer, TransferError, TransferFunction, TransferImage, TransferLayer,
-    TransferSettings, TransferShare,
+    RayProperty, Restyle, Source, StylizedEvaluation, Transfer, TransferError, TransferFunction,
+    TransferImage, TransferLayer, TransferSettings, TransferShare,
 };
 #[cfg(feature = "command")]
 pub use transfer::{parse_transfer, read_transfer};
