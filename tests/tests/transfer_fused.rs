@@ -104,14 +104,14 @@ fn apart(inputs: &Inputs<'_>, scattered: &Texture, map: &Texture, function: &Tra
 }
 
 fn fused(
-    stylized: &StylizedEvaluation,
     inputs: &Inputs<'_>,
     method: &dyn Evaluated,
     map: &Texture,
     function: &TransferFunction,
 ) -> Vec<f64> {
     let uniform = Buffer::uniform(gpu(), function);
-    let bound = stylized.bind(gpu(), inputs, method, map, (function, &uniform)).unwrap();
+    let stylized = StylizedEvaluation::new(gpu(), shaders(), function, method).unwrap();
+    let bound = stylized.bind(gpu(), inputs, method, map, &uniform).unwrap();
     let mut encoder = gpu().encoder();
     stylized.record(&mut encoder, &bound);
     gpu().submit(encoder).unwrap();
@@ -121,7 +121,6 @@ fn fused(
 /// Every property, mode and phase function, over what `method` prefiltered and evaluated.
 fn compare(name: &str, inputs: &Inputs<'_>, medium: &Medium, method: &dyn Evaluated) {
     use RayProperty::{Depth, LightAngle, PictureAngle, Visibility};
-    let stylized = StylizedEvaluation::new(gpu(), shaders(), method).unwrap();
     let scattered = read(method.scattered());
     let lit: f64 = scattered.chunks_exact(4).map(|texel| texel[3]).sum();
     let pixels = scattered.len() as f64 / 4.0;
@@ -145,7 +144,7 @@ fn compare(name: &str, inputs: &Inputs<'_>, medium: &Medium, method: &dyn Evalua
             };
             let function = settings.function(medium);
             let expected = apart(inputs, method.scattered(), &map, &function);
-            let found = fused(&stylized, inputs, method, &map, &function);
+            let found = fused(inputs, method, &map, &function);
             // Errors grow with what the function's colours are multiplied by.
             let most = TransferSettings { strength: 1.0, ..settings }.function(medium);
             let white = apart(inputs, method.scattered(), &white_map(), &most);
@@ -195,8 +194,7 @@ fn directional_lights_are_restyled_as_by_a_pass_of_its_own() {
     let tree = stage(&scene, sun(&scene), None);
     prefiltered("tree, Fourier bases", &tree, Settings::default());
     prefiltered("tree, rank queries", &tree, with(RANK));
-    let wavelet =
-        Settings { weighting: Weighting::Average, ..with(Visibility::Wavelet { bits: 12 }) };
+    let wavelet = Settings { weighting: Weighting::Average, ..with(Visibility::Wavelet { bits: 12 }) };
     prefiltered("tree, wavelet matrix", &tree, wavelet);
     let panes = LightImage::from_function([8, 8], |uv| Vec3::new(uv.x, uv.y, 0.5));
     prefiltered("tree, light texture", &stage(&scene, sun(&scene), Some(&panes)), Settings::default());
@@ -253,7 +251,6 @@ fn nothing_but_numbers_leaves_the_pass() {
     for (round, visibility) in [Visibility::Fourier, RANK, Visibility::Moments].into_iter().enumerate() {
         let settings = Settings { map: MAP, ..with(visibility) };
         let method = Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap();
-        let stylized = StylizedEvaluation::new(gpu(), shaders(), &method).unwrap();
         for turn in 0..4 {
             let round = 4 * round + turn;
             let mut light = stage.light;
@@ -275,10 +272,15 @@ fn nothing_but_numbers_leaves_the_pass() {
             method.record_rectification(&mut encoder, &bound);
             method.record_filter(&mut encoder, &bound);
             gpu().submit(encoder).unwrap();
-            let found = fused(&stylized, &inputs, &method, &map, &function);
+            let found = fused(&inputs, &method, &map, &function);
             assert!(found.iter().all(|value| value.is_finite()), "{function:?}");
             // The compute form says the same.
-            let definitions = method.evaluation_definitions();
+            let mut definitions = method.evaluation_definitions();
+            for (name, needed) in
+                [("ANGLES", function.needs_angles()), ("ANISOTROPIC", function.is_anisotropic())]
+            {
+                definitions = if needed { definitions.flag(name) } else { definitions };
+            }
             let pass = Pass::compute_with(gpu(), shaders(), "stylize/evaluate", &definitions).unwrap();
             let restyled = Texture::storage(gpu(), PICTURE, Rgba16Float);
             let (uniform, sampler) = (Buffer::uniform(gpu(), &function), Sampler::linear(gpu()));
@@ -307,10 +309,13 @@ fn what_an_evaluation_does_not_know_is_an_error() {
     let map = white_map();
     let refused = |across: RayProperty, size: [u32; 2]| {
         let method = Prefiltered::new(gpu(), shaders(), settings, size).unwrap();
-        let stylized = StylizedEvaluation::new(gpu(), shaders(), &method).unwrap();
         let function = TransferSettings { across, ..TransferSettings::default() }.function(&stage.medium);
+        let stylized = match StylizedEvaluation::new(gpu(), shaders(), &function, &method) {
+            Ok(stylized) => stylized,
+            Err(error) => return Some(error),
+        };
         let uniform = Buffer::uniform(gpu(), &function);
-        stylized.bind(gpu(), &stage.inputs(), &method, &map, (&function, &uniform)).err()
+        stylized.bind(gpu(), &stage.inputs(), &method, &map, &uniform).err()
     };
     let error = refused(RayProperty::VisibleDepth, PICTURE).unwrap();
     assert!(matches!(error, TransferError::VisibleDepth), "{error}");

@@ -150,7 +150,8 @@ mod tests {
     #[test]
     fn parts_that_definitions_leave_out_are_gone() {
         let source = "#ifdef A\na\n#else ifdef B\nb\n#ifndef C\nc\n#endif\n#else\nd\n#endif\n#if A == 1\ne\n#else\nf\n#endif\n";
-        let words = |definitions: Definitions| active(source, &definitions).split_whitespace().collect::<String>();
+        let words =
+            |definitions: Definitions| active(source, &definitions).split_whitespace().collect::<String>();
         assert_eq!(words(Definitions::new()), "def");
         assert_eq!(words(Definitions::new().flag("A").flag("B")), "aef");
         assert_eq!(words(Definitions::new().flag("B")), "bcef");

@@ -34,7 +34,7 @@
     Frame, epipolar_ray, nearest_row, slice_from_texel, greatest_sine, depth_from_ray, warped_depth
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin}
-#import airlight::scattering::scattered_ray::ScatteredRay
+#import airlight::scattering::scattered_ray::{ScatteredRay, FARTHEST}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -174,5 +174,6 @@ fn scattered_ray(pixel: vec2<u32>) -> ScatteredRay {
     let radiance = in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, visibility);
     let mean = visibility;
 #endif
-    return ScatteredRay(min(radiance, vec3<f32>(65504.0)), mean, ndc, surface, ray.distance, ray.cosine);
+    let distance = epipolar_ray(frame, ndc, surface, FARTHEST).distance;
+    return ScatteredRay(min(radiance, vec3<f32>(65504.0)), mean, ndc, distance, ray.cosine);
 }

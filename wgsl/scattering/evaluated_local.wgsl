@@ -35,7 +35,7 @@
     Frame, epipolar_ray, nearest_row, depth_from_ray, warped_depth
 }
 #import airlight::scattering::rows::RowRay
-#import airlight::scattering::scattered_ray::ScatteredRay
+#import airlight::scattering::scattered_ray::{ScatteredRay, FARTHEST}
 #import airlight::scattering::single_scatter::Medium
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -94,5 +94,6 @@ fn scattered_ray(pixel: vec2<u32>) -> ScatteredRay {
     );
     let radiance = local_in_scattered(medium, light.radiance, integral, lit);
     let mean = dot(lit, vec3<f32>(1.0 / 3.0));
-    return ScatteredRay(min(radiance, vec3<f32>(65504.0)), mean, ndc, surface, ray.distance, ray.cosine);
+    let distance = epipolar_ray(frame, ndc, surface, FARTHEST).distance;
+    return ScatteredRay(min(radiance, vec3<f32>(65504.0)), mean, ndc, distance, ray.cosine);
 }

@@ -24,7 +24,7 @@
     filtered_column, weighed_column, stretch_weight
 }
 #import airlight::scattering::rows::{RowRay, stretch_begin, region_of, region_begin}
-#import airlight::scattering::scattered_ray::ScatteredRay
+#import airlight::scattering::scattered_ray::{ScatteredRay, FARTHEST}
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -121,5 +121,6 @@ fn scattered_ray(pixel: vec2<u32>) -> ScatteredRay {
 #endif
     let visibility = clamp(projective_visibility(along, row_ray, extinction), 0.0, 1.0);
     let radiance = in_scattered(medium, light.radiance, cosine, distance - near, visibility);
-    return ScatteredRay(min(radiance, vec3<f32>(65504.0)), visibility, ndc, surface, distance, cosine);
+    let to_surface = distance_from_depth(camera, ray, ndc, surface, FARTHEST);
+    return ScatteredRay(min(radiance, vec3<f32>(65504.0)), visibility, ndc, to_surface, cosine);
 }

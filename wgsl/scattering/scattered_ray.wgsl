@@ -3,6 +3,9 @@
 // summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
 // source: thesis 4.3.3, Listing 4.4.
 
+/// What stands for infinity, metres.
+const FARTHEST: f32 = 1e15;
+
 /// A view ray and the light that the air scatters into it.
 struct ScatteredRay {
     /// Linear RGB radiance at the eye, at most 65504.
@@ -12,9 +15,8 @@ struct ScatteredRay {
     visibility: f32,
     /// Where it passes through the picture.
     ndc: vec2<f32>,
-    /// Depth-buffer value at which it ends, 0..1.
-    surface: f32,
-    /// Its length in metres from the eye, or from the near plane of an orthographic camera, at most the medium's limit.
+    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
+    /// the medium may end before.
     distance: f32,
     /// View direction times the unit vector at its origin towards the light, -1..1.
     cosine: f32,

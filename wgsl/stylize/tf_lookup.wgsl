@@ -83,31 +83,13 @@ fn picture_angle(camera: Camera, light: Light, ndc: vec2<f32>) -> f32 {
 /// A property of a ray, 0..1. `depth_limit`: metres.
 fn ray_property(property: u32, ray: RayProperties, depth_limit: f32) -> f32 {
     let limit = clamp(depth_limit, 1e-6, 1e15);
+    let turns = ray.picture_angle * 0.15915494309189535;
     var value = ray.visibility;
-    // Branches: angles cost as much as all the rest of a look-up.
-    switch property {
-        case LINEAR_DEPTH: {
-            value = ray.distance / limit;
-        }
-        case LIGHT_ANGLE: {
-            value = acos(clamp(ray.cosine, -1.0, 1.0)) * 0.3183098861837907;
-        }
-        case PICTURE_ANGLE: {
-            let turns = ray.picture_angle * 0.15915494309189535;
-            value = turns - floor(turns);
-        }
-        case VISIBLE_DEPTH: {
-            value = ray.visible_distance / limit;
-        }
-        default: {
-        }
-    }
+    value = select(value, ray.distance / limit, property == LINEAR_DEPTH);
+    value = select(value, acos(clamp(ray.cosine, -1.0, 1.0)) * 0.3183098861837907, property == LIGHT_ANGLE);
+    value = select(value, turns - floor(turns), property == PICTURE_ANGLE);
+    value = select(value, ray.visible_distance / limit, property == VISIBLE_DEPTH);
     return clamp(finite_or(value, 0.0), 0.0, 1.0);
-}
-
-/// Whether the function reads a property.
-fn asks_for(function: TransferFunction, property: u32) -> bool {
-    return function.across == property || function.down == property;
 }
 
 /// Where a ray lies in the function, 0..1 in x and y.
@@ -125,15 +107,16 @@ fn transfer_lookup(map: texture_2d<f32>, map_sampler: sampler, position: vec2<f3
     return vec4<f32>(rgb, clamp(finite_or(color.a, 0.0), 0.0, 1.0));
 }
 
+/// The function's phase function, 1/sr. `cosine`: view direction times direction towards the light.
+fn transfer_phase(function: TransferFunction, cosine: f32) -> f32 {
+    return select(ISOTROPIC, henyey_greenstein(cosine, function.g), function.phase == HENYEY_GREENSTEIN);
+}
+
 /// Scattered light as the function has it: linear RGB radiance. `color`: of the function, premultiplied; `radiance`:
-/// scattered into the ray; `light_radiance`: of the light; `cosine`: view direction times direction towards the light.
+/// scattered into the ray; `light_radiance`: of the light; `phase`: what `transfer_phase` gives, 1/sr.
 fn stylized(
-    function: TransferFunction, color: vec4<f32>, radiance: vec3<f32>, light_radiance: vec3<f32>, cosine: f32
+    function: TransferFunction, color: vec4<f32>, radiance: vec3<f32>, light_radiance: vec3<f32>, phase: f32
 ) -> vec3<f32> {
-    var phase = ISOTROPIC;
-    if function.phase == HENYEY_GREENSTEIN {
-        phase = henyey_greenstein(cosine, function.g);
-    }
     // A constant phase function leaves the colours of REPLACE as they are.
     var tint = vec3<f32>(phase / ISOTROPIC);
     tint = select(tint, clamp(light_radiance, vec3<f32>(0.0), vec3<f32>(1e15)) * phase, function.mode == LIGHT);

@@ -3,7 +3,9 @@
 // source: stylized scattering, 4.2; thesis 4.3.3, Listing 4.4; 6.2.2.
 // note: What is looked up is not rounded to a texel between the two. The property VISIBLE_DEPTH is marched: functions that
 // note: ask for it stay with the pass `transfer`; here it counts as 0.
-// note: Branches on the function's uniform keep what it does not ask for from being computed.
+// note: What few functions ask for has to be defined: computing it and taking another value costs more than all the rest.
+// definition ANGLES: the properties LIGHT_ANGLE and PICTURE_ANGLE, which count as 0 without it.
+// definition ANISOTROPIC: the phase function of Henyey and Greenstein, instead of which stands the constant one without it.
 // definition LOCAL: rows around a spot or point light, as in `scattering/evaluate_local`.
 // definition PROJECTIVE: projective rows, as in `scattering/evaluate_projective`. Not with LOCAL.
 // definition BASES: number M of bases, as in the filter; without RANK and MOMENTS.
@@ -48,40 +50,34 @@
 // binding transfer_map: the function, premultiplied linear RGBA, any float format that filters.
 // binding transfer_sampler: linear, clamped to the edge.
 
-#import airlight::core::camera::view_ray
 #import airlight::core::finite::{finite_or, finite_or_rgb}
+#import airlight::core::phase::ISOTROPIC
 #import airlight::core::picture::picture_corner
-#import airlight::core::ray_depth::{ray_depth, distance_on_ray}
 #ifdef LOCAL
-#import airlight::scattering::evaluated_local::{camera, light, medium, scattered_ray}
+#import airlight::scattering::evaluated_local::{camera, light, scattered_ray}
 #else ifdef PROJECTIVE
-#import airlight::scattering::evaluated_projective::{camera, light, medium, scattered_ray}
+#import airlight::scattering::evaluated_projective::{camera, light, scattered_ray}
 #else
-#import airlight::scattering::evaluated::{camera, light, medium, scattered_ray}
+#import airlight::scattering::evaluated::{camera, light, scattered_ray}
 #endif
 #import airlight::scattering::scattered_ray::ScatteredRay
 #import airlight::stylize::tf_lookup::{
-    TransferFunction, RayProperties, LINEAR_DEPTH, PICTURE_ANGLE, asks_for, picture_angle, transfer_position,
-    transfer_lookup, stylized
+    TransferFunction, RayProperties, picture_angle, transfer_position, transfer_lookup, transfer_phase, stylized
 }
 
-@group(#{GROUP}) @binding(9) var restyled: texture_storage_2d<rgba16float, write>;
-@group(#{GROUP}) @binding(16) var<uniform> transfer_function: TransferFunction;
-@group(#{GROUP}) @binding(17) var transfer_map: texture_2d<f32>;
-@group(#{GROUP}) @binding(18) var transfer_sampler: sampler;
+@group(#{GROUP}) @binding(9) var<uniform> transfer_function: TransferFunction;
+@group(#{GROUP}) @binding(16) var transfer_map: texture_2d<f32>;
+@group(#{GROUP}) @binding(17) var transfer_sampler: sampler;
+@group(#{GROUP}) @binding(18) var restyled: texture_storage_2d<rgba16float, write>;
 
 /// What the function is asked about a ray.
 fn ray_properties(ray: ScatteredRay) -> RayProperties {
     let visibility = clamp(finite_or(ray.visibility, 0.0), 0.0, 1.0);
-    var of_ray = RayProperties(visibility, ray.distance, ray.cosine, 0.0, 0.0);
-    // The function may tell rays apart that the medium does not.
-    if ray.distance >= medium.distance_limit && asks_for(transfer_function, LINEAR_DEPTH) {
-        let along = ray_depth(camera, view_ray(camera, ray.ndc), ray.ndc);
-        of_ray.distance = distance_on_ray(along, ray.surface, clamp(transfer_function.depth_limit, 1e-6, 1e15));
-    }
-    if asks_for(transfer_function, PICTURE_ANGLE) {
-        of_ray.picture_angle = picture_angle(camera, light, ray.ndc);
-    }
+    var of_ray = RayProperties(visibility, ray.distance, 1.0, 0.0, 0.0);
+#ifdef ANGLES
+    of_ray.cosine = ray.cosine;
+    of_ray.picture_angle = picture_angle(camera, light, ray.ndc);
+#endif
     return of_ray;
 }
 
@@ -91,9 +87,12 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let of_ray = ray_properties(ray);
     let color = transfer_lookup(transfer_map, transfer_sampler, transfer_position(transfer_function, of_ray));
     let radiance = clamp(finite_or_rgb(ray.radiance, 0.0), vec3<f32>(0.0), vec3<f32>(65504.0));
-    return vec4<f32>(
-        stylized(transfer_function, color, radiance, light.radiance, ray.cosine), of_ray.visibility
-    );
+#ifdef ANISOTROPIC
+    let phase = transfer_phase(transfer_function, ray.cosine);
+#else
+    let phase = ISOTROPIC;
+#endif
+    return vec4<f32>(stylized(transfer_function, color, radiance, light.radiance, phase), of_ray.visibility);
 }
 
 @compute @workgroup_size(16, 8)

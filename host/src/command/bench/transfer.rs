@@ -60,14 +60,11 @@ fn overhead(
     let method = Prefiltered::new(gpu, shaders, settings, SIZE)?;
     let inputs = stage.inputs();
     let bound = method.bind(gpu, &inputs)?;
-    let fused = StylizedEvaluation::new(gpu, shaders, &method).map_err(CommandError::failure)?;
-    let fused_bound = fused
-        .bind(gpu, &inputs, &method, &map, (&function, &uniform))
-        .map_err(CommandError::failure)?;
+    let fused = StylizedEvaluation::new(gpu, shaders, &function, &method).map_err(CommandError::failure)?;
+    let fused_bound = fused.bind(gpu, &inputs, &method, &map, &uniform).map_err(CommandError::failure)?;
     let restyle = Restyle::new(gpu, shaders, &function, &inputs, SIZE).map_err(CommandError::failure)?;
-    let restyle_bound = restyle
-        .bind(gpu, &inputs, &method.scattered, &map, &uniform)
-        .map_err(CommandError::failure)?;
+    let restyle_bound =
+        restyle.bind(gpu, &inputs, &method.scattered, &map, &uniform).map_err(CommandError::failure)?;
     run(gpu, &|encoder| {
         method.record(encoder, &bound);
         restyle.record(encoder, &restyle_bound);

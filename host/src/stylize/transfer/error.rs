@@ -102,7 +102,9 @@ pub enum TransferError {
         expected: [u32; 2],
     },
     /// A property that is marched, where nothing is.
-    #[error("an evaluation does not find the mean distance of lit points: apply this function by `Restyle`, which marches")]
+    #[error(
+        "an evaluation does not find the mean distance of lit points: apply this function by `Restyle`, which marches"
+    )]
     VisibleDepth,
     /// A size.
     #[error(transparent)]

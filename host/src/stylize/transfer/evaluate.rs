@@ -20,9 +20,9 @@ use wgpu::TextureFormat::Rgba16Float;
 /// let function = style.function(0.0, &stage.medium);
 /// let method = Prefiltered::new(gpu, shaders, Settings::tuned(gpu), [640, 480])?;
 /// let bound = method.bind(gpu, &stage.inputs())?;
-/// let stylized = StylizedEvaluation::new(gpu, shaders, &method)?;
+/// let stylized = StylizedEvaluation::new(gpu, shaders, &function, &method)?;
 /// let uniform = Buffer::uniform(gpu, &function);
-/// let evaluation = stylized.bind(gpu, &stage.inputs(), &method, &map, (&function, &uniform))?;
+/// let evaluation = stylized.bind(gpu, &stage.inputs(), &method, &map, &uniform)?;
 /// let mut encoder = gpu.encoder();
 /// method.record_rectification(&mut encoder, &bound);
 /// method.record_filter(&mut encoder, &bound);
@@ -40,13 +40,30 @@ pub struct StylizedEvaluation {
 }
 
 impl StylizedEvaluation {
-    /// Builds the pass for pictures of the size of `method`'s, [`Prefiltered`](crate::scattering::Prefiltered) or
+    /// Builds the pass for functions that ask for the same properties and phase function as `function`, and for pictures of
+    /// the size of `method`'s, [`Prefiltered`](crate::scattering::Prefiltered) or
     /// [`ProjectivePrefiltered`](crate::scattering::ProjectivePrefiltered).
     ///
     /// # Errors
+    /// [`TransferError::VisibleDepth`] for a function that asks for the mean distance of lit points,
     /// [`TransferError::Pass`].
-    pub fn new(gpu: &Gpu, shaders: &Shaders, method: &dyn Evaluated) -> Result<Self, TransferError> {
-        let definitions = method.evaluation_definitions();
+    pub fn new(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        function: &TransferFunction,
+        method: &dyn Evaluated,
+    ) -> Result<Self, TransferError> {
+        if function.needs_visible_depth() {
+            return Err(TransferError::VisibleDepth);
+        }
+        let mut definitions = method.evaluation_definitions();
+        for (name, needed) in
+            [("ANGLES", function.needs_angles()), ("ANISOTROPIC", function.is_anisotropic())]
+        {
+            if needed {
+                definitions = definitions.flag(name);
+            }
+        }
         let pass = picture_pass(gpu, shaders, "stylize/evaluate", &definitions, "fragment_evaluate")?;
         let [width, height, _] = method.scattered().size();
         let restyled = Texture::target(gpu, [width, height], Rgba16Float);
@@ -57,7 +74,6 @@ impl StylizedEvaluation {
     /// was built for.
     ///
     /// # Errors
-    /// [`TransferError::VisibleDepth`] for a function that asks for the mean distance of lit points,
     /// [`TransferError::OtherSize`], [`TransferError::Pass`].
     pub fn bind(
         &self,
@@ -65,11 +81,8 @@ impl StylizedEvaluation {
         inputs: &Inputs<'_>,
         method: &dyn Evaluated,
         map: &Texture,
-        (function, uniform): (&TransferFunction, &Buffer),
+        function: &Buffer,
     ) -> Result<Bound, TransferError> {
-        if function.needs_visible_depth() {
-            return Err(TransferError::VisibleDepth);
-        }
         let ([width, height, _], [wide, high, _]) = (inputs.depth.size(), self.restyled.size());
         if [width, height] != [wide, high] {
             let (what, given, expected) = ("a depth buffer", [width, height], [wide, high]);
@@ -77,7 +90,7 @@ impl StylizedEvaluation {
         }
         let mut resources = method.evaluation_resources(inputs);
         resources.extend([
-            ("transfer_function", uniform.into()),
+            ("transfer_function", function.into()),
             ("transfer_map", map.into()),
             ("transfer_sampler", (&self.sampler).into()),
         ]);
