@@ -32,7 +32,7 @@ const SHADOW: [u32; 2] = [512, 512];
 /// Between the two lies one rounding to rgba16float: half a step is 2^-11 of the radiance that is kept or multiplied, and
 /// 2^-12 of visibility, by which the function of these tests changes no more than half as much again; the picture is rounded
 /// once more on either side, another 2^-11 each. The rest is for angles, which either computes in its own order.
-const ROUNDING: f64 = 2.0 / 1024.0;
+const ROUNDING: f64 = 1.5 / 1024.0;
 
 fn stage(scene: &TestScene, light: Lighting, texture: Option<&LightImage>) -> Stage {
     let setting = Setting {

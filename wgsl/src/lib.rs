@@ -3,7 +3,8 @@
 //!
 //! A shader is three things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
 //! and constants: no bindings, no entry points. A *callback* (`lit`, `prefiltered`,
-//! `column_weights`, `rank_sort` and `evaluated…`, among the modules) holds bindings that several passes share behind functions, for an engine to replace. A
+//! `column_weights`, `rank_sort` and `evaluated` with its two variants, among the modules) holds bindings that several
+//! passes share behind functions, for an engine to replace. A
 //! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
 //!

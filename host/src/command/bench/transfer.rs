@@ -4,7 +4,7 @@
 use super::scattering::{SIZE, run};
 use super::{Quality, Row, interleaved, ratio, time};
 use crate::command::CommandError;
-use crate::scattering::{Prefiltered, RANK_BITS, Settings, Visibility, epipole_near_picture};
+use crate::scattering::{Filtering, Prefiltered, RANK_BITS, Settings, Visibility, epipole_near_picture};
 use crate::stylize::{
     Baker, Color, Constraint, Layer, Place, Restyle, Source, StylizedEvaluation, Transfer, TransferSettings,
 };
@@ -15,11 +15,18 @@ const SYSTEM: &str = "stylize";
 /// Samples of each piece of work.
 const SAMPLES: usize = 15;
 
-/// The fused evaluation against the plain one, by Fourier bases and by rank queries.
+/// The fused evaluation against the plain one, by Fourier bases and by rank queries: with the library's default settings, and
+/// with nearest reads, which leave less to compare with.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, stage: &Stage) -> Result<Vec<Row>, CommandError> {
+    let rank = Visibility::Rank { bits: RANK_BITS };
     let mut rows = Vec::new();
-    for (suffix, visibility) in [("", Visibility::Fourier), ("_rank", Visibility::Rank { bits: RANK_BITS })] {
-        rows.extend(overhead(gpu, shaders, stage, suffix, visibility)?);
+    for (suffix, visibility, filtering) in [
+        ("", Visibility::Fourier, Filtering::Linear),
+        ("_rank", rank, Filtering::Linear),
+        ("_nearest", Visibility::Fourier, Filtering::Nearest),
+        ("_rank_nearest", rank, Filtering::Nearest),
+    ] {
+        rows.extend(overhead(gpu, shaders, stage, suffix, (visibility, filtering))?);
     }
     Ok(rows)
 }
@@ -48,7 +55,7 @@ fn overhead(
     shaders: &Shaders,
     stage: &Stage,
     suffix: &str,
-    visibility: Visibility,
+    (visibility, filtering): (Visibility, Filtering),
 ) -> Result<Vec<Row>, CommandError> {
     let style = style();
     let baker = Baker::new(gpu, shaders).map_err(CommandError::failure)?;
@@ -56,7 +63,7 @@ fn overhead(
     let function = style.settings.function(&stage.medium);
     let uniform = Buffer::uniform(gpu, &function);
     let epipole_march = epipole_near_picture(&stage.camera, stage.light.direction);
-    let settings = Settings { visibility, epipole_march, ..Settings::tuned(gpu) };
+    let settings = Settings { visibility, filtering, epipole_march, ..Settings::default() };
     let method = Prefiltered::new(gpu, shaders, settings, SIZE)?;
     let inputs = stage.inputs();
     let bound = method.bind(gpu, &inputs)?;
