@@ -4,6 +4,7 @@
 //! naga_oil drops an import that nothing uses, and with it the error that it names no module; and
 //! its positions shift where a definition was replaced earlier. So declarations are read here.
 
+use crate::Definitions;
 use crate::scan::{is_identifier, without_comments};
 
 /// One imported path: a module, or an item of one.
@@ -48,6 +49,46 @@ pub(crate) fn declared(source: &str) -> Vec<Import> {
         read(&tokens, &mut imports);
     }
     imports
+}
+
+/// A source without the parts that `definitions` leave out; both sides of `#if`, which compares values, stay.
+pub(crate) fn active(source: &str, definitions: &Definitions) -> String {
+    let defined = |name: &str| definitions.iter().any(|(known, _)| known == name.trim());
+    // Of each condition around a line: whether this branch holds, and whether one before it did.
+    let mut around: Vec<(bool, bool)> = Vec::new();
+    let mut kept = String::new();
+    for line in without_comments(source).lines() {
+        let mut words = line.trim().splitn(2, char::is_whitespace);
+        let (word, mut rest) = (words.next().unwrap_or_default(), words.next().unwrap_or_default().trim());
+        let mut opens = word;
+        if word == "#else" {
+            let (other, name) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+            opens = other;
+            rest = name;
+        }
+        let holds = match opens.trim_start_matches('#') {
+            "ifdef" => defined(rest),
+            "ifndef" => !defined(rest),
+            _ => true,
+        };
+        match word {
+            "#ifdef" | "#ifndef" => around.push((holds, holds)),
+            "#if" => around.push((true, false)),
+            "#else" => {
+                if let Some((now, before)) = around.last_mut() {
+                    *now = holds && !*before;
+                    *before |= *now && opens != "if";
+                }
+            }
+            "#endif" => {
+                around.pop();
+            }
+            _ if around.iter().all(|(now, _)| *now) => kept += line,
+            _ => {}
+        }
+        kept.push('\n');
+    }
+    kept
 }
 
 /// Where the path begins, in characters, if the line is an import statement.
@@ -104,6 +145,17 @@ mod tests {
 
     fn paths(source: &str) -> Vec<(String, u32, u32)> {
         declared(source).into_iter().map(|i| (i.path, i.line, i.column)).collect()
+    }
+
+    #[test]
+    fn parts_that_definitions_leave_out_are_gone() {
+        let source = "#ifdef A\na\n#else ifdef B\nb\n#ifndef C\nc\n#endif\n#else\nd\n#endif\n#if A == 1\ne\n#else\nf\n#endif\n";
+        let words =
+            |definitions: Definitions| active(source, &definitions).split_whitespace().collect::<String>();
+        assert_eq!(words(Definitions::new()), "def");
+        assert_eq!(words(Definitions::new().flag("A").flag("B")), "aef");
+        assert_eq!(words(Definitions::new().flag("B")), "bcef");
+        assert_eq!(words(Definitions::new().set("B", 1).flag("C")), "bef");
     }
 
     #[test]

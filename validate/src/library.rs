@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A library of shader modules, passes and permutations.
 
-use crate::{Error, Location, Permutation, imports, permutations};
+use crate::{Definitions, Error, Location, Permutation, imports, permutations};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
@@ -287,6 +287,23 @@ impl Library {
             }
         }
         self.modules.iter().filter(|module| wanted.contains(module.path.as_str())).collect()
+    }
+
+    /// Paths of the modules that a source imports with `definitions`, and those that these import.
+    pub(crate) fn reached(&self, source: &str, definitions: &Definitions) -> BTreeSet<String> {
+        let paths: BTreeSet<String> = self.modules.iter().map(|module| module.path.clone()).collect();
+        let mut reached = BTreeSet::new();
+        let mut open = vec![source];
+        while let Some(source) = open.pop() {
+            for path in used(&imports::active(source, definitions), &paths, "") {
+                if let Some(module) = self.modules.iter().find(|module| module.path == path)
+                    && reached.insert(path)
+                {
+                    open.push(&module.source);
+                }
+            }
+        }
+        reached
     }
 
     /// The text of a file of the library.

@@ -3,7 +3,8 @@
 //!
 //! A shader is three things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
 //! and constants: no bindings, no entry points. A *callback* (`lit`, `prefiltered`,
-//! `column_weights` and `rank_sort`, among the modules) holds bindings that several passes share behind functions, for an engine to replace. A
+//! `column_weights`, `rank_sort` and `evaluated` with its two variants, among the modules) holds bindings that several
+//! passes share behind functions, for an engine to replace. A
 //! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
 //!
@@ -124,6 +125,21 @@ modules! {
         "scattering::rows", "scattering::visibility_fourier", "scattering::visibility_moments",
         "scattering::visibility_rank", "scattering::visibility_rank_weights", "scattering::visibility_wavelet"
     ],
+    scattering::scattered_ray [],
+    scattering::evaluated [
+        "core::camera", "core::finite", "core::light", "core::prefix_sum", "scattering::lit",
+        "scattering::prefiltered", "scattering::rectify", "scattering::rows", "scattering::scattered_ray",
+        "scattering::single_scatter"
+    ],
+    scattering::evaluated_local [
+        "core::camera", "core::finite", "core::light", "scattering::lit", "scattering::local_light",
+        "scattering::prefiltered", "scattering::rectify", "scattering::rows", "scattering::scattered_ray",
+        "scattering::single_scatter"
+    ],
+    scattering::evaluated_projective [
+        "core::camera", "core::finite", "core::light", "scattering::prefiltered", "scattering::projective",
+        "scattering::rows", "scattering::scattered_ray", "scattering::single_scatter"
+    ],
     stylize::morphology [],
     stylize::epipolar_dilate ["core::finite"],
     stylize::perlin_holes ["core::noise"],
@@ -163,6 +179,7 @@ passes! {
     stylize/diffuse,
     stylize/transfer_layer,
     stylize/transfer,
+    stylize/evaluate,
 }
 
 systems![core, scattering, stylize];

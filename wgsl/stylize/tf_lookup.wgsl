@@ -107,12 +107,16 @@ fn transfer_lookup(map: texture_2d<f32>, map_sampler: sampler, position: vec2<f3
     return vec4<f32>(rgb, clamp(finite_or(color.a, 0.0), 0.0, 1.0));
 }
 
+/// The function's phase function, 1/sr. `cosine`: view direction times direction towards the light.
+fn transfer_phase(function: TransferFunction, cosine: f32) -> f32 {
+    return select(ISOTROPIC, henyey_greenstein(cosine, function.g), function.phase == HENYEY_GREENSTEIN);
+}
+
 /// Scattered light as the function has it: linear RGB radiance. `color`: of the function, premultiplied; `radiance`:
-/// scattered into the ray; `light_radiance`: of the light; `cosine`: view direction times direction towards the light.
+/// scattered into the ray; `light_radiance`: of the light; `phase`: what `transfer_phase` gives, 1/sr.
 fn stylized(
-    function: TransferFunction, color: vec4<f32>, radiance: vec3<f32>, light_radiance: vec3<f32>, cosine: f32
+    function: TransferFunction, color: vec4<f32>, radiance: vec3<f32>, light_radiance: vec3<f32>, phase: f32
 ) -> vec3<f32> {
-    let phase = select(ISOTROPIC, henyey_greenstein(cosine, function.g), function.phase == HENYEY_GREENSTEIN);
     // A constant phase function leaves the colours of REPLACE as they are.
     var tint = vec3<f32>(phase / ISOTROPIC);
     tint = select(tint, clamp(light_radiance, vec3<f32>(0.0), vec3<f32>(1e15)) * phase, function.mode == LIGHT);

@@ -5,6 +5,7 @@
 //! shadow map, filtered bases, one dot product a pixel.
 
 mod composite;
+mod evaluated;
 mod light_form;
 mod march;
 mod medium;
@@ -20,6 +21,7 @@ mod upsample;
 mod views;
 
 pub use composite::Composite;
+pub use evaluated::Evaluated;
 pub use light_form::LightForm;
 pub use march::{Along, March, MarchParameters};
 pub use medium::Medium;

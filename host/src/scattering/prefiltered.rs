@@ -2,16 +2,19 @@
 //! Light shafts by prefiltered visibility (thesis 4.3).
 
 use super::{
-    Inputs, Prefilter, Rectification, ScatteringError, Settings, check_size, light_resources, picture_pass,
+    Evaluated, Inputs, Prefilter, Rectification, ScatteringError, Settings, check_size, light_resources,
+    picture_pass,
 };
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, PassError};
+use crate::pass::{Bound, Pass, PassError, Resource};
 use crate::resource::{Sampler, Texture};
 use crate::shaders::Shaders;
+use airlight_validate::Definitions;
 use wgpu::TextureFormat;
 
 /// Light shafts by prefiltered visibility.
 pub struct Prefiltered {
+    settings: Settings,
     /// The map that is filtered.
     pub rectification: Rectification,
     /// What the filter stores.
@@ -49,6 +52,7 @@ impl Prefiltered {
             ("scattering/evaluate", "fragment_evaluate")
         };
         Ok(Self {
+            settings,
             rectification: Rectification::from_settings(gpu, shaders, &settings)?,
             prefilter: Prefilter::new(gpu, shaders, &settings, false)?,
             evaluate_pass: picture_pass(gpu, shaders, pass, &evaluate, entry)?,
@@ -62,17 +66,7 @@ impl Prefiltered {
     /// # Errors
     /// [`PassError`].
     pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<PrefilteredBound, PassError> {
-        let mut resources = vec![
-            ("camera", inputs.camera.into()),
-            ("light", inputs.light.into()),
-            ("medium", inputs.medium.into()),
-            ("frame", (&self.rectification.frame).into()),
-            ("slices", (&self.rectification.slices).into()),
-            ("depth", inputs.depth.into()),
-            ("rectified", (&self.rectification.rectified).into()),
-        ];
-        resources.extend(self.prefilter.resources());
-        resources.extend(light_resources(inputs, &self.light_sampler));
+        let resources = self.evaluation_resources(inputs);
         Ok(PrefilteredBound {
             rectification: self.rectification.bind(gpu, inputs)?,
             filter: self.prefilter.bind(gpu, &resources)?,
@@ -105,5 +99,30 @@ impl Prefiltered {
     /// Bytes of the textures between shadow map and picture.
     pub fn memory(&self) -> u64 {
         self.prefilter.memory() + self.rectification.rectified.memory() + self.rectification.slices.memory()
+    }
+}
+
+impl Evaluated for Prefiltered {
+    fn evaluation_definitions(&self) -> Definitions {
+        self.settings.evaluate_definitions()
+    }
+
+    fn evaluation_resources<'a>(&'a self, inputs: &Inputs<'a>) -> Vec<(&'static str, Resource<'a>)> {
+        let mut resources = vec![
+            ("camera", inputs.camera.into()),
+            ("light", inputs.light.into()),
+            ("medium", inputs.medium.into()),
+            ("frame", (&self.rectification.frame).into()),
+            ("slices", (&self.rectification.slices).into()),
+            ("depth", inputs.depth.into()),
+            ("rectified", (&self.rectification.rectified).into()),
+        ];
+        resources.extend(self.prefilter.resources());
+        resources.extend(light_resources(inputs, &self.light_sampler));
+        resources
+    }
+
+    fn scattered(&self) -> &Texture {
+        &self.scattered
     }
 }

@@ -2,13 +2,14 @@
 //! Light shafts by prefiltered visibility over a projectively rectified map (thesis 4.3 and 4.4.2).
 
 use super::{
-    Inputs, Prefilter, Projective, ProjectiveMap, ScatteringError, Settings, SettingsError, Start,
+    Evaluated, Inputs, Prefilter, Projective, ProjectiveMap, ScatteringError, Settings, SettingsError, Start,
     Visibility, check_size, picture_pass,
 };
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, PassError};
+use crate::pass::{Bound, Pass, PassError, Resource};
 use crate::resource::Texture;
 use crate::shaders::Shaders;
+use airlight_validate::Definitions;
 use wgpu::TextureFormat;
 
 /// Light shafts by prefiltered visibility over a projective map.
@@ -85,16 +86,7 @@ impl ProjectivePrefiltered {
     /// # Errors
     /// [`PassError`].
     pub fn bind(&self, gpu: &Gpu, inputs: &Inputs<'_>) -> Result<ProjectivePrefilteredBound, PassError> {
-        let mut resources = vec![
-            ("camera", inputs.camera.into()),
-            ("light", inputs.light.into()),
-            ("medium", inputs.medium.into()),
-            ("rows", (&self.map.rows).into()),
-            ("depth", inputs.depth.into()),
-            ("shadow_map", inputs.shadow_map.into()),
-            ("rectified", (&self.map.rectified).into()),
-        ];
-        resources.extend(self.prefilter.resources());
+        let resources = self.evaluation_resources(inputs);
         Ok(ProjectivePrefilteredBound {
             resample: self.map.bind(gpu, inputs)?,
             filter: self.prefilter.bind(gpu, &resources)?,
@@ -117,5 +109,29 @@ impl ProjectivePrefiltered {
     /// Records the evaluation of every pixel (thesis 4.3.3, Listing 4.4).
     pub fn record_evaluation(&self, encoder: &mut wgpu::CommandEncoder, bound: &ProjectivePrefilteredBound) {
         self.evaluate_pass.fill(encoder, &bound.evaluate, &self.scattered);
+    }
+}
+
+impl Evaluated for ProjectivePrefiltered {
+    fn evaluation_definitions(&self) -> Definitions {
+        self.settings.projective_definitions().flag("PROJECTIVE")
+    }
+
+    fn evaluation_resources<'a>(&'a self, inputs: &Inputs<'a>) -> Vec<(&'static str, Resource<'a>)> {
+        let mut resources = vec![
+            ("camera", inputs.camera.into()),
+            ("light", inputs.light.into()),
+            ("medium", inputs.medium.into()),
+            ("rows", (&self.map.rows).into()),
+            ("depth", inputs.depth.into()),
+            ("shadow_map", inputs.shadow_map.into()),
+            ("rectified", (&self.map.rectified).into()),
+        ];
+        resources.extend(self.prefilter.resources());
+        resources
+    }
+
+    fn scattered(&self) -> &Texture {
+        &self.scattered
     }
 }

@@ -28,8 +28,8 @@ pub use morphology::{Disc, Morphology, MorphologyBound, MorphologySettings, Wind
 pub use shadows::{ShadowMaps, ShadowOperator, ShadowStyle, StylizedShadows};
 pub use transfer::{
     Baker, Blend, Color, Constraint, DiffusionLevel, Keyed, Layer, Mode, Phase, PickScene, Place,
-    RayProperty, Restyle, Source, Transfer, TransferError, TransferFunction, TransferImage, TransferLayer,
-    TransferSettings, TransferShare,
+    RayProperty, Restyle, Source, StylizedEvaluation, Transfer, TransferError, TransferFunction,
+    TransferImage, TransferLayer, TransferSettings, TransferShare,
 };
 #[cfg(feature = "command")]
 pub use transfer::{parse_transfer, read_transfer};

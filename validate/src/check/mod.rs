@@ -105,22 +105,23 @@ fn run_all(subjects: &[Subject], context: &Context) -> Vec<Finding> {
 /// Modules with each set of definitions that a permutation gives them, then the permutations.
 fn subjects(library: &Library) -> Vec<Subject> {
     let mut subjects = Vec::new();
+    // Every permutation, and the modules that it reaches.
+    let mut importers = Vec::new();
+    for pass in library.passes() {
+        for permutation in library.permutations.get(&pass.name).into_iter().flatten() {
+            let definitions = &permutation.definitions;
+            importers.push((definitions, library.reached(&pass.source, definitions)));
+        }
+    }
     for module in library.modules() {
         let mut reads = BTreeSet::new();
         for other in library.closure(std::slice::from_ref(&module.path)) {
             reads.extend(lint::used_definitions(&other.source).into_keys());
         }
-        let importers = library
-            .passes()
-            .iter()
-            .filter(|pass| library.closure(&pass.imports).iter().any(|other| other.path == module.path));
         let mut sets: BTreeSet<Definitions> = importers
-            .filter_map(|pass| library.permutations.get(&pass.name))
-            .flatten()
-            .map(|permutation| {
-                let read = permutation.definitions.iter().filter(|(name, _)| reads.contains(*name));
-                read.collect()
-            })
+            .iter()
+            .filter(|(_, reached)| reached.contains(&module.path))
+            .map(|(definitions, _)| definitions.iter().filter(|(name, _)| reads.contains(*name)).collect())
             .collect();
         if sets.is_empty() {
             sets.insert(Definitions::new());

@@ -29,7 +29,7 @@
 #endif
 #import airlight::stylize::tf_diffuse::Constraint
 #import airlight::stylize::tf_lookup::{
-    TransferFunction, RayProperties, picture_angle, transfer_position, transfer_lookup, stylized
+    TransferFunction, RayProperties, picture_angle, transfer_position, transfer_lookup, transfer_phase, stylized
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -98,7 +98,8 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
     let ray = pixel_properties(pixel);
     let color = transfer_lookup(transfer_map, transfer_sampler, transfer_position(transfer_function, ray));
     let radiance = clamp(finite_or_rgb(textureLoad(scattered, pixel, 0).rgb, 0.0), vec3<f32>(0.0), vec3<f32>(65504.0));
-    return vec4<f32>(stylized(transfer_function, color, radiance, light.radiance, ray.cosine), ray.visibility);
+    let phase = transfer_phase(transfer_function, ray.cosine);
+    return vec4<f32>(stylized(transfer_function, color, radiance, light.radiance, phase), ray.visibility);
 }
 
 @compute @workgroup_size(16, 8)

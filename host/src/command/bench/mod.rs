@@ -7,6 +7,7 @@ mod resolution;
 mod scattering;
 mod stylize;
 mod tables;
+mod transfer;
 mod visibility;
 
 use super::CommandError;

@@ -33,6 +33,7 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
     }
     bar.set_message("closing and dilation along view rays");
     rows.extend(epipolar(gpu, shaders, &stage)?);
+    rows.extend(super::transfer::rows(gpu, shaders, &stage)?);
     bar.finish_and_clear();
     Ok(rows)
 }

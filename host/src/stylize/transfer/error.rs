@@ -101,6 +101,11 @@ pub enum TransferError {
         /// Those needed.
         expected: [u32; 2],
     },
+    /// A property that is marched, where nothing is.
+    #[error(
+        "an evaluation does not find the mean distance of lit points: apply this function by `Restyle`, which marches"
+    )]
+    VisibleDepth,
     /// A size.
     #[error(transparent)]
     Stylize(#[from] crate::stylize::StylizeError),

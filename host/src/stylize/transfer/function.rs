@@ -118,6 +118,17 @@ impl TransferFunction {
         [self.across, self.down].contains(&(RayProperty::VisibleDepth as u32))
     }
 
+    /// Whether an angle is asked for.
+    pub fn needs_angles(&self) -> bool {
+        let angles = [RayProperty::LightAngle as u32, RayProperty::PictureAngle as u32];
+        angles.contains(&self.across) || angles.contains(&self.down)
+    }
+
+    /// Whether its own phase function is other than constant.
+    pub fn is_anisotropic(&self) -> bool {
+        self.phase == Phase::HenyeyGreenstein as u32
+    }
+
     /// Numbers between those of two functions, `share` 0..1 of the second; what is no number stays that of the first until
     /// the second is reached.
     #[must_use]
