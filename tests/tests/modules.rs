@@ -168,7 +168,9 @@ fn entry(line: &str) -> Option<&str> {
 }
 
 /// Modules that hold what several passes bind.
-const CALLBACKS: [&str; 4] = [
+const CALLBACKS: [&str; 6] = [
+    "transmittance/map_form.wgsl",
+    "transmittance/transmittance_map.wgsl",
     "scattering/lit.wgsl",
     "scattering/prefiltered.wgsl",
     "scattering/column_weights.wgsl",
