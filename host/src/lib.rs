@@ -3,7 +3,8 @@
 //!
 //! [`Gpu`] opens a device on WebGPU's default limits. [`Shaders`] composes modules and passes.
 //! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
-//! of plain functions that record passes into an encoder: [`scattering`], [`stylize`].
+//! of plain functions that record passes into an encoder: [`scattering`],
+//! [`stylize`], [`transmittance`].
 
 #[cfg(feature = "command")]
 pub mod command;
@@ -21,6 +22,7 @@ pub mod scenes;
 mod shaders;
 mod stage;
 pub mod stylize;
+pub mod transmittance;
 
 pub use airlight_validate as validate;
 pub use gpu::{Gpu, GpuError};

@@ -159,6 +159,39 @@ impl Pass {
     /// # Errors
     /// [`PassError::UnknownEntryPoint`], [`PassError::Gpu`].
     pub fn render(gpu: &Gpu, composed: &Composed, stages: &RenderStages<'_>) -> Result<Self, PassError> {
+        let targets = [stages.target.map(wgpu::ColorTargetState::from)];
+        Self::render_to(gpu, composed, stages, if stages.target.is_some() { &targets } else { &[] })
+    }
+
+    /// Like [`Pass::render`] into `count` targets of the format of `stages`, added to what is there.
+    ///
+    /// # Errors
+    /// As [`Pass::render`].
+    pub fn additive(
+        gpu: &Gpu,
+        composed: &Composed,
+        stages: &RenderStages<'_>,
+        count: usize,
+    ) -> Result<Self, PassError> {
+        let component = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let target = stages.target.map(|format| wgpu::ColorTargetState {
+            format,
+            blend: Some(wgpu::BlendState { color: component, alpha: component }),
+            write_mask: wgpu::ColorWrites::ALL,
+        });
+        Self::render_to(gpu, composed, stages, &vec![target; count])
+    }
+
+    fn render_to(
+        gpu: &Gpu,
+        composed: &Composed,
+        stages: &RenderStages<'_>,
+        targets: &[Option<wgpu::ColorTargetState>],
+    ) -> Result<Self, PassError> {
         let reflection = composed.reflect();
         let mut used = vec![stages.vertex];
         used.extend(stages.fragment);
@@ -176,7 +209,6 @@ impl Pass {
         let (bindings, layout, pipeline_layout) =
             layouts(gpu, &reflection, &used, wgpu::ShaderStages::VERTEX_FRAGMENT);
         let module = shader_module(gpu, composed);
-        let targets = [stages.target.map(wgpu::ColorTargetState::from)];
         let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&composed.pass),
             layout: Some(&pipeline_layout),
@@ -199,7 +231,7 @@ impl Pass {
                 module: &module,
                 entry_point: Some(fragment),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: if stages.target.is_some() { &targets } else { &[] },
+                targets,
             }),
             multiview_mask: None,
             cache: None,

@@ -114,7 +114,7 @@ fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     Ok(view.to_vec())
 }
 
-/// A 2D texture or an array of them, with one view of the whole.
+/// A 2D texture, an array of them or a 3D texture, with one view of the whole.
 pub struct Texture {
     /// The texture itself.
     pub raw: wgpu::Texture,
@@ -174,6 +174,12 @@ impl Texture {
         )
     }
 
+    /// A 3D texture that passes read.
+    pub fn volume(gpu: &Gpu, size: [u32; 3], format: wgpu::TextureFormat) -> Self {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        Self::create(gpu, size, format, usage, wgpu::TextureViewDimension::D3)
+    }
+
     /// One layer, to be bound where a pass takes a single texture. Read back it is still the whole array.
     pub(crate) fn of_layer(&self, layer: u32) -> Self {
         Self { raw: self.raw.clone(), view: self.layer(layer), dimension: wgpu::TextureViewDimension::D2 }
@@ -217,7 +223,11 @@ impl Texture {
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: size[2] },
             mip_level_count: 1,
             sample_count: samples,
-            dimension: wgpu::TextureDimension::D2,
+            dimension: if dimension == wgpu::TextureViewDimension::D3 {
+                wgpu::TextureDimension::D3
+            } else {
+                wgpu::TextureDimension::D2
+            },
             format,
             usage: usage | copies,
             view_formats: &[],
@@ -227,7 +237,7 @@ impl Texture {
         Self { raw, view, dimension }
     }
 
-    /// Width, height, layers.
+    /// Width, height, layers or depth.
     pub fn size(&self) -> [u32; 3] {
         [self.raw.width(), self.raw.height(), self.raw.depth_or_array_layers()]
     }

@@ -9,3 +9,4 @@ pub mod phase;
 pub mod prefix_sum;
 pub mod scattering;
 pub mod stylize;
+pub mod transmittance;

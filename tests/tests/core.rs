@@ -18,7 +18,37 @@ use gpu::{Probe, Random, gpu, shaders};
 use probing::{f, hold, worst};
 
 /// Every function of the core modules, each with a test here or in one of `core_*.rs`.
-const COVERED: [(&str, &[&str]); 14] = [
+const COVERED: [(&str, &[&str]); 16] = [
+    // In tests/tests/core_cosine.rs.
+    (
+        "cosine_basis",
+        &[
+            "harmonics_first",
+            "harmonics_next",
+            "cosine_orders",
+            "cosine_basis",
+            "cosine_integral",
+            "sine_over_angle",
+            "cosine_spread",
+            "fejer_window",
+        ],
+    ),
+    // In tests/tests/moments.rs, the bounds as a whole and the roots alone.
+    (
+        "moment_bounds",
+        &[
+            "chebyshev",
+            "moments_at",
+            "mix_moments",
+            "moment_factors",
+            "orthogonal_polynomials",
+            "greatest_weight",
+            "cosine_of_third",
+            "newton_step",
+            "greatest_cubic_root",
+            "share_bounds",
+        ],
+    ),
     (
         "camera",
         &[

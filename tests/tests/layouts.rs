@@ -11,6 +11,7 @@ use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
     TransferShare, Window,
 };
+use airlight::transmittance::{SplatTarget, VolumeSpace};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -212,6 +213,11 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         extinction: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
     });
     twin!(twins: SortParameters { count: u32, shift: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: VolumeSpace {
+        unit_from_world: Mat4, world_from_unit: Mat4, extinction_scale: f32, step_length: f32,
+        reserved_a: f32, reserved_b: f32,
+    });
+    twin!(twins: SplatTarget { size: Vec2, count: u32, reserved: u32 });
     twin!(twins: HoleParameters {
         cells: Vec2, threshold: f32, persistence: f32, octaves: u32, seed: u32, travel: u32, travel_part: f32,
         displacement: f32, turn: f32, far_depth: f32, reserved: f32,

@@ -71,7 +71,8 @@ fn ray(random: &mut Random, depths: &[f64]) -> f64 {
 #[test]
 fn bounds_are_those_of_the_reference() {
     let probe = Probe {
-        head: "#import airlight::scattering::visibility_moments::{Moments, moment_bounds, moment_visibility}",
+        head: "#import airlight::core::moment_bounds::Moments
+               #import airlight::scattering::visibility_moments::{moment_bounds, moment_visibility}",
         body: "let m = Moments(vec3<f32>(input(0u), input(1u), input(2u)), vec3<f32>(input(3u), input(4u), input(5u)));
                let bounds = moment_bounds(m, input(6u));
                output(0u, bounds.x); output(1u, bounds.y); output(2u, moment_visibility(m, input(6u)));",
@@ -119,7 +120,8 @@ fn bounds_are_those_of_the_reference() {
 #[test]
 fn any_moments_give_a_visibility() {
     let probe = Probe {
-        head: "#import airlight::scattering::visibility_moments::{Moments, moment_visibility, moment_bounds}",
+        head: "#import airlight::core::moment_bounds::Moments
+               #import airlight::scattering::visibility_moments::{moment_visibility, moment_bounds}",
         body: "let m = Moments(vec3<f32>(input(0u), input(1u), input(2u)), vec3<f32>(input(3u), input(4u), input(5u)));
                output(0u, moment_visibility(m, input(6u)));
                let bounds = moment_bounds(m, input(6u));
@@ -147,7 +149,7 @@ fn any_moments_give_a_visibility() {
 #[test]
 fn cosine_of_a_third_is_never_too_small() {
     let probe = Probe {
-        head: "#import airlight::scattering::visibility_moments::cosine_of_third",
+        head: "#import airlight::core::moment_bounds::cosine_of_third",
         body: "output(0u, cosine_of_third(input(0u)));",
         inputs: 1,
         outputs: 1,
@@ -166,8 +168,9 @@ fn cosine_of_a_third_is_never_too_small() {
 #[test]
 fn texels_hold_the_moments() {
     let probe = Probe {
-        head: "#import airlight::scattering::visibility_moments::{
-                   Moments, pack_moments, unpack_moments, moments_from_depth, signed_depth
+        head: "#import airlight::core::moment_bounds::Moments
+               #import airlight::scattering::visibility_moments::{
+                   pack_moments, unpack_moments, moments_from_depth, signed_depth
                }",
         body: "let m = Moments(vec3<f32>(input(0u), input(1u), input(2u)), vec3<f32>(input(3u), input(4u), input(5u)));
                let back = unpack_moments(pack_moments(m));

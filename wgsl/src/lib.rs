@@ -3,8 +3,8 @@
 //!
 //! A shader is three things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
 //! and constants: no bindings, no entry points. A *callback* (`lit`, `prefiltered`,
-//! `column_weights`, `rank_sort` and `evaluated` with its two variants, among the modules) holds bindings that several
-//! passes share behind functions, for an engine to replace. A
+//! `column_weights`, `rank_sort`, `evaluated` with its two variants, `map_form` and `transmittance_map`, among the modules)
+//! holds bindings that several passes share behind functions, for an engine to replace. A
 //! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
 //!
@@ -89,6 +89,8 @@ modules! {
     core::shadow_views ["core::light"],
     core::color [],
     core::fourier_basis [],
+    core::cosine_basis ["core::fourier_basis"],
+    core::moment_bounds [],
     core::phase [],
     core::picture [],
     core::prefix_sum [],
@@ -97,6 +99,25 @@ modules! {
     core::noise ["core::finite"],
     core::ray_depth ["core::camera"],
     core::resolve_depth [],
+    transmittance::light_space ["core::light"],
+    transmittance::map_texels ["core::finite"],
+    transmittance::extinction_map ["core::cosine_basis", "transmittance::map_texels"],
+    transmittance::bounded_map ["transmittance::extinction_map", "transmittance::map_texels"],
+    transmittance::opacity_map ["core::cosine_basis", "core::fourier_basis", "transmittance::map_texels"],
+    transmittance::function_map [
+        "core::cosine_basis", "core::prefix_sum", "transmittance::map_texels", "transmittance::opacity_map"
+    ],
+    transmittance::transmittance_moments ["core::fourier_basis", "core::moment_bounds"],
+    transmittance::volume [],
+    transmittance::particles ["core::finite", "core::light", "transmittance::light_space"],
+    transmittance::map_form [
+        "core::cosine_basis", "transmittance::extinction_map", "transmittance::opacity_map",
+        "transmittance::transmittance_moments"
+    ],
+    transmittance::transmittance_map [
+        "transmittance::bounded_map", "transmittance::extinction_map", "transmittance::function_map",
+        "transmittance::map_texels", "transmittance::opacity_map", "transmittance::transmittance_moments"
+    ],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
     scattering::projective ["core::fourier_basis", "core::prefix_sum"],
@@ -114,7 +135,7 @@ modules! {
         "core::light", "scattering::local_light", "scattering::projective", "scattering::rectify",
         "scattering::single_scatter"
     ],
-    scattering::visibility_moments ["core::fourier_basis"],
+    scattering::visibility_moments ["core::fourier_basis", "core::moment_bounds"],
     scattering::march ["core::finite", "core::light", "core::prefix_sum"],
     scattering::upsample [],
     scattering::lit [
@@ -153,6 +174,11 @@ passes! {
     core/scan, core/sort,
     core/tonemap,
     core/resolve_depth,
+    transmittance/voxels,
+    transmittance/check_particles,
+    transmittance/splat,
+    transmittance/splat_fixed,
+    transmittance/query,
     scattering/slices,
     scattering/rectify,
     scattering/rectify_projective,
@@ -182,4 +208,4 @@ passes! {
     stylize/evaluate,
 }
 
-systems![core, scattering, stylize];
+systems![core, transmittance, scattering, stylize];

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Input data: meshes, light textures, their loaders, and the generators of scenes and of noise.
+//! Input data: meshes, volumes, particles, light textures, their loaders, and the generators of scenes and of noise.
 //!
 //! Everything is right-handed, y up and in metres; albedos are linear RGB in 0..1. Generators are
-//! deterministic: the same parameters give the same mesh.
+//! deterministic: the same parameters give the same data.
 
 mod blue_noise;
 mod light_image;
 #[cfg(feature = "command")]
 mod load;
 mod mesh;
+mod particles;
 mod random;
 mod shapes;
 mod terrain;
 mod tree;
+mod volume;
 
 pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
 #[cfg(feature = "command")]
@@ -23,7 +25,9 @@ pub use light_image::{LightImage, LightImageError};
 #[cfg(feature = "command")]
 pub use load::{MeshError, load_mesh, mesh_from_bytes};
 pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};
+pub use particles::{Particle, Particles, burst};
 pub use random::Random;
 pub use shapes::{cuboid, plane, sphere, torus};
 pub use terrain::{TerrainParameters, terrain, terrain_height};
 pub use tree::{TreeParameters, tree};
+pub use volume::{Volume, VolumeError, cloud, plume};

@@ -83,6 +83,34 @@ pub(super) fn value_noise(seed: u64, x: f32, y: f32) -> f32 {
     mix(mix(corner(0, 0), corner(1, 0), u), mix(corner(0, 1), corner(1, 1), u), v)
 }
 
+/// Value noise of three coordinates in 0..1, continuous with its first derivatives.
+pub(super) fn value_noise_in_space(seed: u64, at: Vec3) -> f32 {
+    let cell = at.floor();
+    let part = at - cell;
+    let fade = part * part * (Vec3::splat(3.0) - 2.0 * part);
+    let mut sum = 0.0;
+    for corner in 0..8 {
+        let offset = [corner & 1, corner >> 1 & 1, corner >> 2 & 1];
+        let [x, y, z] = std::array::from_fn(|axis| (cell[axis] as i32).wrapping_add(offset[axis]));
+        let weight = |axis: usize| if offset[axis] == 1 { fade[axis] } else { 1.0 - fade[axis] };
+        let layer = seed ^ u64::from(z.cast_unsigned()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        sum += weight(0) * weight(1) * weight(2) * lattice(layer, x, y);
+    }
+    sum
+}
+
+/// Octaves of that noise, each of half the strength and size of the one before, over their greatest sum.
+pub(super) fn fractal_noise(seed: u64, at: Vec3, octaves: u32) -> f32 {
+    let (mut sum, mut most, mut strength, mut scale) = (0.0, 0.0, 1.0, 1.0);
+    for octave in 0..octaves {
+        sum += strength * value_noise_in_space(seed.wrapping_add(u64::from(octave)), scale * at);
+        most += strength;
+        strength *= 0.5;
+        scale *= 2.03;
+    }
+    if most > 0.0 { sum / most } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -21,8 +21,9 @@
 // binding light_sampler: linear, clamped to the edge; with LIGHT_TEXTURE only.
 
 #import airlight::core::finite::finite_or
+#import airlight::core::moment_bounds::Moments
 #import airlight::scattering::column_weights::{WeightedColumn, weighted_column, next_column, falloff_of_column}
-#import airlight::scattering::visibility_moments::{moments_from_depth, pack_moments, Moments}
+#import airlight::scattering::visibility_moments::{moments_from_depth, pack_moments}
 
 @group(#{GROUP}) @binding(2) var rectified: texture_2d<f32>;
 #ifdef COLORS

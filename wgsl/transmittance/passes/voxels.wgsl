@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: Builds a transmittance map from a volume: the light ray of each texel is marched and projected.
+// source: Gautron et al., "Extinction transmittance maps" (2011), Eq. 1; Delalandre et al. (2011) with FUNCTION.
+// note: Steps are of a voxel at most and of equal length from where the ray enters the volume to where it leaves it; the sample in
+// note: the middle stands for the whole step, whose projection is exact. Values that are not finite or negative are 0.
+// note: BOUNDED marches twice: for the steps that hold anything, then for the projection.
+// definition COEFFICIENTS: numbers a texel, four a layer: 4, 8 or 16, of the moments 8; 4 where it is not given.
+// definition FUNCTION: transmittance function map; without this and the next four an extinction map of cosines.
+// definition PERIODIC: the series of the full period instead of cosines: a Fourier opacity map, or with FUNCTION.
+// definition POWER: six power moments.
+// definition TRIGONOMETRIC: two trigonometric moments.
+// definition BOUNDED: an extinction map over the occupied interval of each texel.
+// definition LINEAR: trilinear reads; else the nearest voxel.
+// definition RGBA16FLOAT: half floats; not for moments, which need 32 bits.
+// binding light: the directional light of the map.
+// binding volume: where the volume lies.
+// binding extinction: the volume, any float format; with LINEAR one that filters.
+// binding volume_sampler: linear, clamped to the edge; with LINEAR only.
+// binding coefficients: out, the layers of the map.
+// binding intervals: out, least and greatest occupied depth, 0..1; 1 and 0 where there is none. With BOUNDED only.
+
+#import airlight::core::finite::finite_or
+#import airlight::core::light::Light
+#import airlight::transmittance::light_space::{map_point, map_range}
+#import airlight::transmittance::map_form::{contribution, LAYERS}
+#import airlight::transmittance::volume::{VolumeSpace, segment_in_box, march_steps, voxel_at}
+#ifdef BOUNDED
+#import airlight::transmittance::bounded_map::{depth_in_interval, length_in_interval}
+#endif
+#ifdef FUNCTION
+#import airlight::transmittance::function_map::mean_transmittance
+#endif
+
+@group(#{GROUP}) @binding(0) var<uniform> light: Light;
+@group(#{GROUP}) @binding(1) var<uniform> volume: VolumeSpace;
+@group(#{GROUP}) @binding(2) var extinction: texture_3d<f32>;
+#ifdef LINEAR
+@group(#{GROUP}) @binding(3) var volume_sampler: sampler;
+#endif
+#ifdef RGBA16FLOAT
+@group(#{GROUP}) @binding(4) var coefficients: texture_storage_2d_array<rgba16float, write>;
+/// The greatest half float.
+const GREATEST: f32 = 65504.0;
+#else
+@group(#{GROUP}) @binding(4) var coefficients: texture_storage_2d_array<rgba32float, write>;
+const GREATEST: f32 = 1e30;
+#endif
+#ifdef BOUNDED
+@group(#{GROUP}) @binding(5) var intervals: texture_storage_2d<rg32float, write>;
+#endif
+
+/// More than any extinction may be, 1/m.
+const GREATEST_EXTINCTION: f32 = 1e6;
+
+/// Extinction at a place in unit space, 1/m.
+fn extinction_at(unit: vec3<f32>) -> f32 {
+#ifdef LINEAR
+    let value = textureSampleLevel(extinction, volume_sampler, unit, 0.0).x;
+#else
+    let value = textureLoad(extinction, voxel_at(unit, textureDimensions(extinction)), 0).x;
+#endif
+    return clamp(finite_or(value * volume.extinction_scale, 0.0), 0.0, GREATEST_EXTINCTION);
+}
+
+@compute @workgroup_size(16, 8)
+fn march_voxels(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(coefficients);
+    if any(id.xy >= size) {
+        return;
+    }
+    let texels = vec2<f32>(id.xy) + 0.5;
+    let near = map_point(light, vec2<f32>(size), texels, 0.0);
+    let far = map_point(light, vec2<f32>(size), texels, 1.0);
+    let origin = (volume.unit_from_world * vec4<f32>(near, 1.0)).xyz;
+    let along = (volume.unit_from_world * vec4<f32>(far - near, 0.0)).xyz;
+    let part = segment_in_box(origin, along);
+    let range = map_range(light);
+    let steps = march_steps((part.y - part.x) * range, volume);
+    let depth_step = (part.y - part.x) / f32(steps);
+    let metres = depth_step * range;
+
+#ifdef BOUNDED
+    var interval = vec2<f32>(1.0, 0.0);
+    for (var i = 0u; i < steps; i++) {
+        let depth = part.x + (f32(i) + 0.5) * depth_step;
+        let occupied = extinction_at(origin + depth * along) * metres > 0.0;
+        let reached = vec2<f32>(depth - 0.5 * depth_step, depth + 0.5 * depth_step);
+        interval = select(interval, vec2<f32>(min(interval.x, reached.x), max(interval.y, reached.y)), occupied);
+    }
+    textureStore(intervals, id.xy, vec4<f32>(interval, 0.0, 0.0));
+#endif
+
+    var sums: array<vec4<f32>, LAYERS>;
+#ifdef FUNCTION
+    // Clear up to where the volume begins, and the same from where it ends.
+    let clear = contribution(0.5 * part.x, 0.5 * part.x);
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        sums[layer] = part.x * clear.layers[layer];
+    }
+    var passed = 0.0;
+#endif
+    for (var i = 0u; i < steps; i++) {
+        let depth = part.x + (f32(i) + 0.5) * depth_step;
+        let optical_depth = extinction_at(origin + depth * along) * metres;
+#ifdef FUNCTION
+        let own = contribution(depth, 0.5 * depth_step);
+        let weight = depth_step * exp(-passed) * mean_transmittance(optical_depth);
+        passed += optical_depth;
+#else
+        let weight = optical_depth;
+#ifdef BOUNDED
+        let own = contribution(depth_in_interval(interval, depth), length_in_interval(interval, 0.5 * depth_step));
+#else
+        let own = contribution(depth, 0.5 * depth_step);
+#endif
+#endif
+        for (var layer = 0u; layer < LAYERS; layer++) {
+            sums[layer] += weight * own.layers[layer];
+        }
+    }
+#ifdef FUNCTION
+    let rest = 1.0 - part.y;
+    let behind = contribution(part.y + 0.5 * rest, 0.5 * rest);
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        sums[layer] += rest * exp(-passed) * behind.layers[layer];
+    }
+#endif
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        textureStore(coefficients, id.xy, layer, clamp(sums[layer], vec4<f32>(-GREATEST), vec4<f32>(GREATEST)));
+    }
+}
