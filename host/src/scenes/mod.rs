@@ -3,6 +3,9 @@
 
 mod lights;
 mod parts;
+mod stylized;
+pub use stylized::knob;
+mod windows;
 
 use crate::core::{Cascades, DepthRange, PerspectiveView, Sky, View, direction_from_angles};
 use crate::data::{
@@ -59,6 +62,26 @@ impl Scene {
     }
 }
 
+/// A scene, and an object in it by itself.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// The whole.
+    pub scene: Scene,
+    /// The object: holes are made in its shadow alone.
+    pub object: Mesh,
+    /// Everything else.
+    pub rest: Mesh,
+}
+
+impl Parts {
+    /// `scene` with both meshes in the place of its own.
+    fn new(scene: Scene, object: Mesh, rest: Mesh) -> Self {
+        let mut mesh = rest.clone();
+        mesh.append(&object);
+        Self { scene: Scene { mesh, ..scene }, object, rest }
+    }
+}
+
 /// Why a scene could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
@@ -71,7 +94,7 @@ pub enum SceneError {
 }
 
 /// The names that [`scene`] knows.
-pub const SCENES: [&str; 11] = [
+pub const SCENES: [&str; 17] = [
     "foliage",
     "terrain",
     "torus",
@@ -83,6 +106,12 @@ pub const SCENES: [&str; 11] = [
     "glass",
     "orthographic",
     "cascades",
+    "canopy",
+    "ring",
+    "halo",
+    "leap",
+    "hare",
+    "turtle",
 ];
 
 /// A scene by name; none if there is no such scene.
@@ -96,12 +125,28 @@ pub fn scene(name: &str) -> Result<Option<Scene>, SceneError> {
         "torus" => torus_scene()?,
         "plane" => plane_scene()?,
         "sun" => sun()?,
-        "spot" => lights::spot()?,
-        "slide" => lights::slide()?,
-        "lamp" => lights::lamp()?,
-        "glass" => lights::glass()?,
+        "spot" => windows::spot()?,
+        "slide" => windows::slide()?,
+        "glass" => windows::glass()?,
         "orthographic" => lights::orthographic()?,
         "cascades" => lights::cascades()?,
+        _ => return Ok(parts(name)?.map(|parts| parts.scene)),
+    }))
+}
+
+/// A scene by name whose object is known apart from the rest; none if there is no such scene.
+///
+/// # Errors
+/// [`SceneError`].
+pub fn parts(name: &str) -> Result<Option<Parts>, SceneError> {
+    Ok(Some(match name {
+        "lamp" => lights::lamp()?,
+        "canopy" => stylized::canopy()?,
+        "ring" => stylized::ring()?,
+        "halo" => stylized::halo()?,
+        "leap" => stylized::leap()?,
+        "hare" => stylized::hare()?,
+        "turtle" => stylized::turtle()?,
         _ => return Ok(None),
     }))
 }

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A scene whose shadow maps and whose scattered light are changed, and what comes out as pixels.
+
+use super::super::studio::Studio;
+use crate::command::CommandError;
+use crate::core::{DepthRange, POINT};
+use crate::data::Bounds;
+use crate::scattering::{Inputs, Prefiltered};
+use crate::scenes::{self, Parts, Scene};
+use crate::stage::PartShadows;
+use crate::stylize::{
+    Baker, HolePattern, Holes, Keyed, PickScene, Restyle, ShadowMaps, ShadowOperator, ShadowStyle,
+    StylizedShadows, Transfer, shadow_map_extent,
+};
+use crate::{Buffer, Stage, Texture};
+use glam::{Mat4, Vec2, Vec3};
+use std::collections::BTreeMap;
+
+/// A scene on the device, its object known by itself, and the passes of its scattered light.
+pub struct Easel<'a> {
+    studio: &'a Studio,
+    /// Pixels of the pictures.
+    pub size: [u32; 2],
+    /// The scene.
+    pub scene: Scene,
+    /// The same on the device.
+    pub stage: Stage,
+    parts: Option<[PartShadows; 2]>,
+    object: Bounds,
+    prefiltered: Prefiltered,
+}
+
+/// What is done to the shadow maps.
+#[derive(Clone, Copy, Default)]
+pub struct Change<'a> {
+    /// Holes in the object.
+    pub holes: Option<Holes>,
+    /// Seconds.
+    pub time: f64,
+    /// Operators on the whole.
+    pub operators: &'a [ShadowOperator],
+}
+
+impl Change<'_> {
+    /// Holes that stand still.
+    pub fn holes(holes: Holes) -> Self {
+        Self { holes: Some(holes), ..Self::default() }
+    }
+}
+
+impl<'a> Easel<'a> {
+    /// A scene with pictures of the studio's size.
+    pub fn new(studio: &'a Studio, name: &str, map: u32) -> Result<Self, CommandError> {
+        Self::sized(studio, name, map, studio.size)
+    }
+
+    /// A scene with standard shadow maps of `map` texels a side and pictures of `size`.
+    pub fn sized(studio: &'a Studio, name: &str, map: u32, size: [u32; 2]) -> Result<Self, CommandError> {
+        let parts = scenes::parts(name)?;
+        let (scene, meshes) = match parts {
+            Some(Parts { scene, object, rest }) => (scene, Some([object, rest])),
+            None => {
+                let scene = scenes::scene(name)?;
+                (scene.ok_or_else(|| CommandError::failure(format!("no scene `{name}`")))?, None)
+            }
+        };
+        let gpu = &studio.gpu;
+        let stage = Stage::new(gpu, &studio.raster, &scene.setting(), size, [map, map])?;
+        let object = meshes.as_ref().and_then(|[object, _]| object.bounds()).or_else(|| scene.mesh.bounds());
+        let object = object.unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
+        let parts = match meshes {
+            Some([object, rest]) => {
+                let shadows = |mesh| stage.shadows_of(gpu, &studio.raster, mesh);
+                Some([shadows(&object)?, shadows(&rest)?])
+            }
+            None => None,
+        };
+        let prefiltered = Prefiltered::new(gpu, &studio.shaders, studio.settings_of(&stage), size)?;
+        Ok(Self { studio, size, scene, stage, parts, object, prefiltered })
+    }
+
+    /// The shadow maps with a change, not yet recorded.
+    pub fn stylized(&self, change: &Change<'_>) -> Result<StylizedShadows, CommandError> {
+        let stage = &self.stage;
+        let matrices = StylizedShadows::matrices(&stage.light, stage.views.as_ref());
+        let distance = self.object.center().distance(stage.light.position).max(0.5 * self.object.radius());
+        let pattern = |matrix: &Mat4| {
+            let holes = change.holes?;
+            let extent = shadow_map_extent(matrix, distance);
+            Some(HolePattern::new(&holes, extent, DepthRange::Forward).and_then(|holes| holes.at(change.time)))
+        };
+        let holes: Vec<_> = matrices.iter().filter_map(pattern).collect::<Result<_, _>>().map_err(CommandError::failure)?;
+        let drawn = stage.inputs();
+        let (maps, rest) = match &self.parts {
+            Some([object, rest]) if change.holes.is_some() => {
+                (ShadowMaps::of_part(object), Some(ShadowMaps::of_part(rest)))
+            }
+            _ => (ShadowMaps::of(&drawn), None),
+        };
+        let style = ShadowStyle { holes: &holes, operators: change.operators };
+        let over = (&stage.camera, &matrices[..]);
+        StylizedShadows::new(&self.studio.gpu, &self.studio.shaders, &style, over, maps, rest)
+            .map_err(CommandError::failure)
+    }
+
+    /// The same, recorded.
+    pub fn shadows(&self, change: &Change<'_>) -> Result<StylizedShadows, CommandError> {
+        let shadows = self.stylized(change)?;
+        let mut encoder = self.studio.gpu.encoder();
+        shadows.record(&mut encoder);
+        self.studio.gpu.submit(encoder)?;
+        Ok(shadows)
+    }
+
+    /// Milliseconds of a change.
+    pub fn time(&self, shadows: &StylizedShadows) -> Result<f64, CommandError> {
+        self.studio.time(&|encoder| shadows.record(encoder))
+    }
+
+    /// The light that is scattered with these inputs; the next call overwrites it.
+    pub fn scatter(&self, inputs: &Inputs<'_>) -> Result<&Texture, CommandError> {
+        let bound = self.prefiltered.bind(&self.studio.gpu, inputs)?;
+        let mut encoder = self.studio.gpu.encoder();
+        self.prefiltered.record(&mut encoder, &bound);
+        self.studio.gpu.submit(encoder)?;
+        Ok(&self.prefiltered.scattered)
+    }
+
+    /// The picture of a change.
+    pub fn picture(&self, change: &Change<'_>) -> Result<Vec<u8>, CommandError> {
+        let shadows = self.shadows(change)?;
+        self.finish(self.scatter(&shadows.inputs(&self.stage.inputs()))?)
+    }
+
+    /// Surfaces seen through the air, and the light that it scatters, as pixels.
+    pub fn finish(&self, scattered: &Texture) -> Result<Vec<u8>, CommandError> {
+        let composed = self.studio.compose(&self.stage, scattered)?;
+        self.studio.pixels(&composed, self.scene.exposure)
+    }
+
+    /// Scattered light alone, as pixels.
+    pub fn light(&self, scattered: &Texture) -> Result<Vec<u8>, CommandError> {
+        self.studio.pixels(scattered, self.scene.exposure)
+    }
+
+    /// The texture of a transfer function at a frame, its picks placed in `scattered`.
+    pub fn function(
+        &self,
+        baker: &Baker,
+        style: &Keyed<Transfer>,
+        frame: f32,
+        inputs: Inputs<'_>,
+        scattered: &Texture,
+    ) -> Result<Texture, CommandError> {
+        let movements = BTreeMap::new();
+        let (camera, medium) = (&self.stage.camera, &self.stage.medium);
+        let scene = PickScene { camera, medium, inputs, scattered, movements: &movements };
+        baker.bake_frame(&self.studio.gpu, style, frame, Some(&scene)).map_err(CommandError::failure)
+    }
+
+    /// Scattered light through a function.
+    pub fn restyled(
+        &self,
+        style: &Keyed<Transfer>,
+        frame: f32,
+        map: &Texture,
+        inputs: &Inputs<'_>,
+        scattered: &Texture,
+    ) -> Result<Texture, CommandError> {
+        let gpu = &self.studio.gpu;
+        let function = style.function(frame, &self.stage.medium);
+        let restyle = Restyle::new(gpu, &self.studio.shaders, &function, inputs, self.size)
+            .map_err(CommandError::failure)?;
+        let uniform = Buffer::uniform(gpu, &function);
+        let bound = restyle.bind(gpu, inputs, scattered, map, &uniform).map_err(CommandError::failure)?;
+        let mut encoder = gpu.encoder();
+        restyle.record(&mut encoder, &bound);
+        gpu.submit(encoder)?;
+        Ok(restyle.restyled)
+    }
+
+    /// The shadow map that `inputs` have, around the object, in colours of depth and in the shape of a picture.
+    pub fn map(&self, inputs: &Inputs<'_>) -> Result<Vec<u8>, CommandError> {
+        let depths = self.around_object(inputs.shadow_map)?;
+        let drawn = match &self.parts {
+            Some([object, _]) => self.around_object(&object.shadow_map)?,
+            None => self.around_object(&self.stage.pictures.shadow_map)?,
+        };
+        let near = drawn.iter().copied().fold(1.0, f32::min);
+        let far = drawn.iter().copied().filter(|depth| *depth < 1.0).fold(near, f32::max);
+        let color = |depth: &f32| depth_color(*depth, near, far.max(near + 1e-6));
+        Ok(depths.iter().flat_map(color).collect())
+    }
+
+    /// A map of one value a texel, 0..1, around the object, in grey.
+    pub fn grey(&self, map: &Texture) -> Result<Vec<u8>, CommandError> {
+        let grey = |value: &f32| {
+            let value = (value.clamp(0.0, 1.0) * 255.0).round() as u8;
+            [value, value, value, 255]
+        };
+        Ok(self.around_object(map)?.iter().flat_map(grey).collect())
+    }
+
+    /// Texels around the object, in the shape of a picture, the nearest to each pixel.
+    fn around_object(&self, map: &Texture) -> Result<Vec<f32>, CommandError> {
+        let [width, height, _] = map.size();
+        let texels = map.read(&self.studio.gpu)?;
+        let matrix = self.stage.light.clip_from_world;
+        let (mut least, mut greatest) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for corner in self.object.corners() {
+            let ndc = matrix.project_point3(corner).truncate();
+            let uv = Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
+            (least, greatest) = (least.min(uv), greatest.max(uv));
+        }
+        let texel = Vec2::new(width as f32, height as f32);
+        let (middle, extent) = (0.5 * (least + greatest) * texel, (greatest - least) * texel * 1.1);
+        let [wide, high] = self.size;
+        let step = (extent.x / wide as f32).max(extent.y / high as f32);
+        let at = |x: u32, y: u32| {
+            let from_middle =
+                Vec2::new(x as f32 + 0.5 - 0.5 * wide as f32, y as f32 + 0.5 - 0.5 * high as f32);
+            let place = (middle + from_middle * step).floor();
+            let inside = place.cmpge(Vec2::ZERO).all() && place.cmplt(texel).all();
+            if inside { texels[place.y as usize * width as usize + place.x as usize] } else { 1.0 }
+        };
+        Ok((0..high).flat_map(|y| (0..wide).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect())
+    }
+
+    /// Whether the light's map can be shown around the object.
+    pub fn has_one_map(&self) -> bool {
+        self.stage.light.kind != POINT
+    }
+}
+
+/// From pale near the light over rust to slate behind the object; night where nothing blocks.
+fn depth_color(depth: f32, near: f32, far: f32) -> [u8; 4] {
+    const STOPS: [Vec3; 4] = [
+        Vec3::new(255.0, 236.0, 200.0),
+        Vec3::new(224.0, 130.0, 62.0),
+        Vec3::new(110.0, 56.0, 62.0),
+        Vec3::new(38.0, 46.0, 66.0),
+    ];
+    if depth >= 1.0 {
+        return [9, 11, 17, 255];
+    }
+    let share = (depth - near) / (far - near);
+    let behind = ((depth - far) / (1.0 - far).max(1e-6)).clamp(0.0, 1.0);
+    let place = if share <= 1.0 { 2.0 * share.max(0.0) } else { 2.5 + 0.5 * behind };
+    let stop = (place as usize).min(2);
+    let color = STOPS[stop].lerp(STOPS[stop + 1], place - stop as f32);
+    [color.x as u8, color.y as u8, color.z as u8, 255]
+}

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Scenes whose shafts are stylized: each has an object with a shadow worth changing.
+
+use super::{BUNNY, Parts, SUZANNE, Scene, SceneError, placed, standing, view};
+use crate::core::{Sky, direction_from_angles};
+use crate::data::{
+    Mesh, TerrainParameters, TreeParameters, mesh_from_bytes, plane, sphere, terrain, terrain_height, torus,
+    tree,
+};
+use crate::scattering::Medium;
+use crate::stage::Lighting;
+use glam::{Mat4, Quat, Vec2, Vec3};
+
+pub fn knob(name: &str, default: f32) -> f32 {
+    std::env::var("KNOBS")
+        .ok()
+        .and_then(|all| {
+            all.split(',').find_map(|pair| {
+                let (key, value) = pair.split_once('=')?;
+                (key == name).then(|| value.parse().ok()).flatten()
+            })
+        })
+        .unwrap_or(default)
+}
+
+/// Below a great tree whose crown lets next to no light through.
+pub fn canopy() -> Result<Parts, SceneError> {
+    let parameters = TerrainParameters { seed: 11, size: 34.0, resolution: 140, height: 0.7 };
+    let mut rest = terrain(&parameters).with_albedo(Vec3::new(0.10, 0.12, 0.05));
+    let ground = |x, z| terrain_height(&parameters, x, z);
+    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.0).with_albedo(Vec3::new(0.72, 0.66, 0.60));
+    let at = Vec2::new(knob("bx", 1.9), knob("bz", 2.4));
+    rest.append(&placed(bunny, Vec3::new(at.x, ground(at.x, at.y) - 0.02, at.y), knob("bt", -20.0)));
+    let crown = tree(&TreeParameters {
+        seed: knob("seed", 4.0) as u64,
+        height: knob("th", 7.6),
+        crown_radius: knob("cr", 4.6),
+        leaves: knob("leaves", 46000.0) as u32,
+        leaf_length: knob("ll", 0.2),
+        clumps: knob("clumps", 60.0) as u32,
+    });
+    let object = placed(crown, Vec3::new(0.0, ground(0.0, 0.0) - 0.1, 0.0), 20.0);
+    let scene = Scene {
+        name: "canopy",
+        title: "Below a great tree",
+        mesh: Mesh::default(),
+        view: view(
+            Vec3::new(knob("ex", -1.6), knob("ey", 1.3), knob("ez", 11.5)),
+            Vec3::new(knob("tx", 0.5), knob("ty", 3.2), 0.0),
+            knob("fov", 46.0),
+            0.1,
+            40.0,
+        ),
+        light: Lighting::directional(
+            direction_from_angles(knob("az", 222.0), knob("el", 48.0)),
+            Vec3::new(8.4, 6.0, 3.5) * knob("li", 1.0),
+        ),
+        light_texture: None,
+        cascades: None,
+        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10), Vec3::new(0.07, 0.08, 0.10), Vec3::new(0.03, 0.03, 0.025)),
+        medium: Medium::new(knob("ext", 0.045), Vec3::splat(0.96), knob("g", 0.4), 40.0)?,
+        exposure: knob("exp", 0.8),
+    };
+    Ok(Parts::new(scene, object, rest))
+}
+
+/// A ring in a cone of light from above.
+pub fn ring() -> Result<Parts, SceneError> {
+    let rest = plane(Vec2::splat(26.0), 8).with_albedo(Vec3::new(0.20, 0.19, 0.19));
+    let centre = Vec3::new(0.0, knob("ry", 3.5), 0.0);
+    let object = torus(knob("rM", 1.35), knob("rm", 0.62), 192, 72)
+        .with_albedo(Vec3::new(0.72, 0.16, 0.07))
+        .transformed(Mat4::from_rotation_translation(
+            Quat::from_rotation_x(knob("rt", 12.0).to_radians()),
+            centre,
+        ));
+    let scene = Scene {
+        name: "ring",
+        title: "A ring in a cone of light",
+        mesh: Mesh::default(),
+        view: view(
+            Vec3::new(0.0, knob("ey", 1.9), knob("ez", 9.5)),
+            Vec3::new(0.0, knob("ty", 2.6), 0.0),
+            knob("fov", 44.0),
+            0.1,
+            30.0,
+        ),
+        light: Lighting::Spot {
+            position: Vec3::new(0.0, knob("ly", 13.5), knob("lz", -0.6)),
+            target: Vec3::ZERO,
+            outer_degrees: knob("lo", 15.5),
+            inner_degrees: knob("lin", 13.5),
+            intensity: Vec3::new(1.0, 0.86, 0.66) * knob("li", 4200.0),
+            radius: 0.1,
+        },
+        light_texture: None,
+        cascades: None,
+        sky: Sky::new(Vec3::new(0.012, 0.016, 0.03), Vec3::new(0.02, 0.026, 0.045), Vec3::splat(0.012)),
+        medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.95), knob("g", 0.1), 30.0)?,
+        exposure: knob("exp", 0.7),
+    };
+    Ok(Parts::new(scene, object, rest))
+}
+
+/// A head before the sun.
+pub fn halo() -> Result<Parts, SceneError> {
+    let parameters = TerrainParameters { seed: 8, size: 30.0, resolution: 120, height: 0.8 };
+    let rest = terrain(&parameters).with_albedo(Vec3::new(0.09, 0.08, 0.07));
+    let head = standing(mesh_from_bytes(SUZANNE.0, SUZANNE.1)?, 2.2).with_albedo(Vec3::new(0.50, 0.30, 0.18));
+    let object = placed(head, Vec3::new(0.0, terrain_height(&parameters, 0.0, 0.0) + knob("hy", 0.9), 0.0), knob("ht", -12.0));
+    let scene = Scene {
+        name: "halo",
+        title: "A head before the sun",
+        mesh: Mesh::default(),
+        view: view(
+            Vec3::new(knob("ex", 0.3), knob("ey", 1.5), knob("ez", 5.6)),
+            Vec3::new(0.0, knob("ty", 1.9), 0.0),
+            knob("fov", 48.0),
+            0.1,
+            30.0,
+        ),
+        light: Lighting::directional(
+            direction_from_angles(knob("az", 182.0), knob("el", 10.0)),
+            Vec3::new(8.4, 6.2, 3.8) * knob("li", 1.0),
+        ),
+        light_texture: None,
+        cascades: None,
+        sky: Sky::new(Vec3::new(0.02, 0.03, 0.06), Vec3::new(0.06, 0.06, 0.07), Vec3::new(0.02, 0.02, 0.02)),
+        medium: Medium::new(knob("ext", 0.05), Vec3::splat(0.96), knob("g", 0.5), 40.0)?,
+        exposure: knob("exp", 0.5),
+    };
+    Ok(Parts::new(scene, object, rest))
+}
+
+/// A leaping bunny, lit from ahead.
+pub fn leap() -> Result<Parts, SceneError> {
+    let parameters = TerrainParameters { seed: 8, size: 30.0, resolution: 120, height: 0.5 };
+    let rest = terrain(&parameters).with_albedo(Vec3::new(0.10, 0.11, 0.06));
+    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.7).with_albedo(Vec3::new(0.70, 0.60, 0.52));
+    let turn = Quat::from_rotation_z(knob("bz", 18.0).to_radians()) * Quat::from_rotation_y(knob("bt", 75.0).to_radians());
+    let object = bunny.transformed(Mat4::from_rotation_translation(turn, Vec3::new(knob("bx", 1.6), knob("by", 1.7), 0.0)));
+    let scene = Scene {
+        name: "leap",
+        title: "A leaping bunny",
+        mesh: Mesh::default(),
+        view: view(
+            Vec3::new(knob("ex", -0.6), knob("ey", 1.6), knob("ez", 7.6)),
+            Vec3::new(knob("tx", -0.2), knob("ty", 1.9), 0.0),
+            knob("fov", 44.0),
+            0.1,
+            30.0,
+        ),
+        light: Lighting::directional(
+            direction_from_angles(knob("az", 100.0), knob("el", 17.0)),
+            Vec3::new(8.4, 6.2, 4.0) * knob("li", 1.3),
+        ),
+        light_texture: None,
+        cascades: None,
+        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10), Vec3::new(0.06, 0.07, 0.09), Vec3::new(0.03, 0.03, 0.025)),
+        medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.96), knob("g", 0.1), 40.0)?,
+        exposure: knob("exp", 0.8),
+    };
+    Ok(Parts::new(scene, object, rest))
+}
+
+/// A bunny on a mound, the sun beside the picture.
+pub fn hare() -> Result<Parts, SceneError> {
+    let parameters = TerrainParameters { seed: 21, size: 26.0, resolution: 120, height: 0.8 };
+    let rest = terrain(&parameters).with_albedo(Vec3::new(0.09, 0.10, 0.06));
+    let ground = terrain_height(&parameters, 0.0, 0.0);
+    let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 2.4).with_albedo(Vec3::new(0.62, 0.55, 0.48));
+    let object = placed(bunny, Vec3::new(0.0, ground - 0.04, 0.0), knob("bt", 25.0));
+    let scene = Scene {
+        name: "hare",
+        title: "A bunny against the light",
+        mesh: Mesh::default(),
+        view: view(
+            Vec3::new(knob("ex", 0.9), knob("ey", 1.0), knob("ez", 6.8)),
+            Vec3::new(knob("tx", 0.6), knob("ty", 1.55), 0.0),
+            knob("fov", 44.0),
+            0.1,
+            30.0,
+        ),
+        light: Lighting::directional(
+            direction_from_angles(knob("az", 238.0), knob("el", 34.0)),
+            Vec3::new(8.4, 6.0, 3.6) * knob("li", 1.0),
+        ),
+        light_texture: None,
+        cascades: None,
+        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10), Vec3::new(0.07, 0.07, 0.08), Vec3::new(0.03, 0.03, 0.025)),
+        medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.96), knob("g", 0.35), 40.0)?,
+        exposure: knob("exp", 0.7),
+    };
+    Ok(Parts::new(scene, object, rest))
+}
+
+/// A turtle in green water, its shadow below it.
+pub fn turtle() -> Result<Parts, SceneError> {
+    let parameters = TerrainParameters { seed: 3, size: 24.0, resolution: 120, height: 0.7 };
+    let rest = terrain(&parameters)
+        .with_albedo(Vec3::new(0.42, 0.40, 0.30))
+        .transformed(Mat4::from_translation(Vec3::new(0.0, knob("floor", -3.2), 0.0)));
+    let object = turtle_mesh().transformed(Mat4::from_rotation_translation(
+        Quat::from_rotation_y(knob("yaw", -35.0).to_radians())
+            * Quat::from_rotation_x(knob("pitch", -14.0).to_radians())
+            * Quat::from_rotation_z(knob("roll", -12.0).to_radians()),
+        Vec3::new(0.0, knob("y", 0.3), 0.0),
+    ));
+    let scene = Scene {
+        name: "turtle",
+        title: "A turtle",
+        mesh: Mesh::default(),
+        view: view(
+            Vec3::new(knob("ex", 0.6), knob("ey", -0.6), knob("ez", 7.0)),
+            Vec3::new(knob("tx", 0.0), knob("ty", -0.35), 0.0),
+            knob("fov", 42.0),
+            0.1,
+            26.0,
+        ),
+        light: Lighting::directional(
+            direction_from_angles(knob("az", 30.0), knob("el", 62.0)),
+            Vec3::new(5.2, 7.6, 7.0) * knob("li", 1.2),
+        ),
+        light_texture: None,
+        cascades: None,
+        sky: Sky::new(Vec3::new(0.06, 0.16, 0.19), Vec3::new(0.03, 0.09, 0.12), Vec3::new(0.02, 0.05, 0.06)),
+        medium: Medium::new(knob("ext", 0.085), Vec3::new(0.62, 0.93, 0.95), knob("g", 0.15), 26.0)?,
+        exposure: knob("exp", 0.8),
+    };
+    Ok(Parts::new(scene, object, rest))
+}
+
+/// A turtle of ellipsoids around the origin, its head towards +z, 3 m long.
+fn turtle_mesh() -> Mesh {
+    let shell = Vec3::new(0.20, 0.15, 0.07);
+    let skin = Vec3::new(0.30, 0.36, 0.16);
+    let pale = Vec3::new(0.62, 0.58, 0.38);
+    let mut mesh = Mesh::default();
+    let mut part = |half: Vec3, at: Vec3, turn: Quat, albedo: Vec3| {
+        let ball = sphere(1.0, 64, 40).with_albedo(albedo);
+        mesh.append(&ball.transformed(Mat4::from_scale_rotation_translation(half, turn, at)));
+    };
+    let level = Quat::IDENTITY;
+    part(Vec3::new(0.92, 0.42, 1.12), Vec3::new(0.0, 0.06, 0.0), level, shell);
+    part(Vec3::new(0.98, 0.16, 1.18), Vec3::new(0.0, -0.02, 0.0), level, skin);
+    part(Vec3::new(0.80, 0.24, 0.98), Vec3::new(0.0, -0.10, 0.0), level, pale);
+    part(Vec3::new(0.20, 0.18, 0.45), Vec3::new(0.0, 0.02, 1.25), level, pale);
+    part(Vec3::new(0.27, 0.24, 0.36), Vec3::new(0.0, 0.12, 1.66), Quat::from_rotation_x(0.15), skin);
+    part(Vec3::new(0.07, 0.05, 0.22), Vec3::new(0.0, -0.05, -1.25), level, skin);
+    for side in [-1.0, 1.0] {
+        let eye = Vec3::new(0.215 * side, 0.18, 1.76);
+        part(Vec3::splat(0.05), eye, level, Vec3::splat(0.02));
+        // Front flippers sweep outwards and back, hind ones are paddles.
+        let sweep = Quat::from_rotation_y(0.75 * side) * Quat::from_rotation_z(-0.28 * side);
+        let reach = sweep * Vec3::new(side, 0.0, 0.0);
+        part(Vec3::new(0.95, 0.055, 0.27), Vec3::new(0.62 * side, -0.03, 0.72) + 0.78 * reach, sweep, skin);
+        let paddle = Quat::from_rotation_y(0.95 * side) * Quat::from_rotation_z(-0.12 * side);
+        let reach = paddle * Vec3::new(side, 0.0, 0.0);
+        part(Vec3::new(0.48, 0.05, 0.22), Vec3::new(0.52 * side, -0.06, -0.78) + 0.36 * reach, paddle, skin);
+    }
+    mesh
+}
