@@ -23,6 +23,20 @@ pub fn knob(name: &str, default: f32) -> f32 {
         .unwrap_or(default)
 }
 
+/// A lamp in the place of the sun, so that only the surroundings of the scene are lit: `radius` metres around `at`, from
+/// `distance` metres away in a direction by azimuth and elevation. The irradiance there is `irradiance`.
+fn beam(at: Vec3, direction: Vec3, distance: f32, radius: f32, irradiance: Vec3) -> Lighting {
+    let degrees = |radius: f32| (radius / distance).atan().to_degrees();
+    Lighting::Spot {
+        position: at + direction * distance,
+        target: at,
+        outer_degrees: degrees(radius),
+        inner_degrees: degrees(knob("soft", 0.75) * radius),
+        intensity: irradiance * distance * distance,
+        radius: 0.1,
+    }
+}
+
 /// Below a great tree whose crown lets next to no light through.
 pub fn canopy() -> Result<Parts, SceneError> {
     let parameters = TerrainParameters { seed: 11, size: 34.0, resolution: 140, height: 0.7 };
@@ -51,13 +65,16 @@ pub fn canopy() -> Result<Parts, SceneError> {
             0.1,
             40.0,
         ),
-        light: Lighting::directional(
-            direction_from_angles(knob("az", 222.0), knob("el", 48.0)),
-            Vec3::new(8.4, 6.0, 3.5) * knob("li", 1.0),
+        light: beam(
+            Vec3::new(knob("lx", 0.0), knob("ly", 5.0), knob("lz", 0.0)),
+            direction_from_angles(knob("az", 235.0), knob("el", 48.0)),
+            knob("ld", 24.0),
+            knob("lr", 4.4),
+            Vec3::new(1.0, 0.74, 0.42) * knob("li", 16.0),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10), Vec3::new(0.07, 0.08, 0.10), Vec3::new(0.03, 0.03, 0.025)),
+        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10) * knob("sky", 1.0), Vec3::new(0.07, 0.08, 0.10) * knob("sky", 1.0), Vec3::new(0.03, 0.03, 0.025) * knob("sky", 1.0)),
         medium: Medium::new(knob("ext", 0.045), Vec3::splat(0.96), knob("g", 0.4), 40.0)?,
         exposure: knob("exp", 0.8),
     };
@@ -66,9 +83,9 @@ pub fn canopy() -> Result<Parts, SceneError> {
 
 /// A ring in a cone of light from above.
 pub fn ring() -> Result<Parts, SceneError> {
-    let rest = plane(Vec2::splat(26.0), 8).with_albedo(Vec3::new(0.20, 0.19, 0.19));
+    let rest = plane(Vec2::splat(26.0), 8).with_albedo(Vec3::splat(knob("floor", 0.06)));
     let centre = Vec3::new(0.0, knob("ry", 3.5), 0.0);
-    let object = torus(knob("rM", 1.35), knob("rm", 0.62), 192, 72)
+    let object = torus(knob("rM", 1.25), knob("rm", 0.75), 192, 72)
         .with_albedo(Vec3::new(0.72, 0.16, 0.07))
         .transformed(Mat4::from_rotation_translation(
             Quat::from_rotation_x(knob("rt", 12.0).to_radians()),
@@ -86,8 +103,8 @@ pub fn ring() -> Result<Parts, SceneError> {
             30.0,
         ),
         light: Lighting::Spot {
-            position: Vec3::new(0.0, knob("ly", 13.5), knob("lz", -0.6)),
-            target: Vec3::ZERO,
+            position: Vec3::new(0.0, knob("ly", 13.5), knob("lz", -0.5)),
+            target: Vec3::new(0.0, 0.0, knob("ltz", -0.5)),
             outer_degrees: knob("lo", 15.5),
             inner_degrees: knob("lin", 13.5),
             intensity: Vec3::new(1.0, 0.86, 0.66) * knob("li", 4200.0),
@@ -95,7 +112,7 @@ pub fn ring() -> Result<Parts, SceneError> {
         },
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.012, 0.016, 0.03), Vec3::new(0.02, 0.026, 0.045), Vec3::splat(0.012)),
+        sky: Sky::new(Vec3::new(0.012, 0.016, 0.03) * knob("sky", 1.0), Vec3::new(0.02, 0.026, 0.045) * knob("sky", 1.0), Vec3::splat(0.012) * knob("sky", 1.0)),
         medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.95), knob("g", 0.1), 30.0)?,
         exposure: knob("exp", 0.7),
     };
@@ -119,13 +136,16 @@ pub fn halo() -> Result<Parts, SceneError> {
             0.1,
             30.0,
         ),
-        light: Lighting::directional(
-            direction_from_angles(knob("az", 182.0), knob("el", 10.0)),
-            Vec3::new(8.4, 6.2, 3.8) * knob("li", 1.0),
+        light: beam(
+            Vec3::new(knob("lx", 0.0), knob("ly", 2.2), knob("lz", 0.0)),
+            direction_from_angles(knob("az", 183.0), knob("el", 12.0)),
+            knob("ld", 9.0),
+            knob("lr", 2.4),
+            Vec3::new(1.0, 0.78, 0.46) * knob("li", 14.0),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.02, 0.03, 0.06), Vec3::new(0.06, 0.06, 0.07), Vec3::new(0.02, 0.02, 0.02)),
+        sky: Sky::new(Vec3::new(0.02, 0.03, 0.06) * knob("sky", 1.0), Vec3::new(0.06, 0.06, 0.07) * knob("sky", 1.0), Vec3::new(0.02, 0.02, 0.02) * knob("sky", 1.0)),
         medium: Medium::new(knob("ext", 0.05), Vec3::splat(0.96), knob("g", 0.5), 40.0)?,
         exposure: knob("exp", 0.5),
     };
@@ -150,13 +170,16 @@ pub fn leap() -> Result<Parts, SceneError> {
             0.1,
             30.0,
         ),
-        light: Lighting::directional(
-            direction_from_angles(knob("az", 100.0), knob("el", 17.0)),
-            Vec3::new(8.4, 6.2, 4.0) * knob("li", 1.3),
+        light: beam(
+            Vec3::new(knob("lx", 1.0), knob("ly", 2.0), knob("lz", 0.0)),
+            direction_from_angles(knob("az", 96.0), knob("el", 15.0)),
+            knob("ld", 12.0),
+            knob("lr", 1.9),
+            Vec3::new(1.0, 0.80, 0.52) * knob("li", 14.0),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10), Vec3::new(0.06, 0.07, 0.09), Vec3::new(0.03, 0.03, 0.025)),
+        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10) * knob("sky", 1.0), Vec3::new(0.06, 0.07, 0.09) * knob("sky", 1.0), Vec3::new(0.03, 0.03, 0.025) * knob("sky", 1.0)),
         medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.96), knob("g", 0.1), 40.0)?,
         exposure: knob("exp", 0.8),
     };
@@ -181,13 +204,16 @@ pub fn hare() -> Result<Parts, SceneError> {
             0.1,
             30.0,
         ),
-        light: Lighting::directional(
-            direction_from_angles(knob("az", 238.0), knob("el", 34.0)),
-            Vec3::new(8.4, 6.0, 3.6) * knob("li", 1.0),
+        light: beam(
+            Vec3::new(knob("lx", 0.0), knob("ly", 1.3), knob("lz", 0.0)),
+            direction_from_angles(knob("az", 250.0), knob("el", 36.0)),
+            knob("ld", 14.0),
+            knob("lr", 2.4),
+            Vec3::new(1.0, 0.76, 0.45) * knob("li", 14.0),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10), Vec3::new(0.07, 0.07, 0.08), Vec3::new(0.03, 0.03, 0.025)),
+        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10) * knob("sky", 1.0), Vec3::new(0.07, 0.07, 0.08) * knob("sky", 1.0), Vec3::new(0.03, 0.03, 0.025) * knob("sky", 1.0)),
         medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.96), knob("g", 0.35), 40.0)?,
         exposure: knob("exp", 0.7),
     };
@@ -217,13 +243,16 @@ pub fn turtle() -> Result<Parts, SceneError> {
             0.1,
             26.0,
         ),
-        light: Lighting::directional(
-            direction_from_angles(knob("az", 30.0), knob("el", 62.0)),
-            Vec3::new(5.2, 7.6, 7.0) * knob("li", 1.2),
+        light: beam(
+            Vec3::new(knob("lx", 0.0), knob("ly", 0.0), knob("lz", 0.0)),
+            direction_from_angles(knob("az", -35.0), knob("el", 50.0)),
+            knob("ld", 14.0),
+            knob("lr", 3.4),
+            Vec3::new(0.62, 1.0, 0.88) * knob("li", 14.0),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.06, 0.16, 0.19), Vec3::new(0.03, 0.09, 0.12), Vec3::new(0.02, 0.05, 0.06)),
+        sky: Sky::new(Vec3::new(0.06, 0.16, 0.19) * knob("sky", 1.0), Vec3::new(0.03, 0.09, 0.12) * knob("sky", 1.0), Vec3::new(0.02, 0.05, 0.06) * knob("sky", 1.0)),
         medium: Medium::new(knob("ext", 0.085), Vec3::new(0.62, 0.93, 0.95), knob("g", 0.15), 26.0)?,
         exposure: knob("exp", 0.8),
     };

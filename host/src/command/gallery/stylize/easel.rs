@@ -179,17 +179,22 @@ impl<'a> Easel<'a> {
         Ok(restyle.restyled)
     }
 
-    /// The shadow map that `inputs` have, around the object, in colours of depth and in the shape of a picture.
+    /// The shadow map that `inputs` have, around the object and in the shape of a picture: the object and what is new in
+    /// warm colours, everything else in cool ones, the paler the nearer to the light.
     pub fn map(&self, inputs: &Inputs<'_>) -> Result<Vec<u8>, CommandError> {
         let depths = self.around_object(inputs.shadow_map)?;
-        let drawn = match &self.parts {
-            Some([object, _]) => self.around_object(&object.shadow_map)?,
-            None => self.around_object(&self.stage.pictures.shadow_map)?,
+        let drawn = &self.stage.pictures.shadow_map;
+        let [object, rest] = match &self.parts {
+            Some([object, rest]) => [self.around_object(&object.shadow_map)?, self.around_object(&rest.shadow_map)?],
+            None => [self.around_object(drawn)?, vec![1.0; depths.len()]],
         };
-        let near = drawn.iter().copied().fold(1.0, f32::min);
-        let far = drawn.iter().copied().filter(|depth| *depth < 1.0).fold(near, f32::max);
-        let color = |depth: &f32| depth_color(*depth, near, far.max(near + 1e-6));
-        Ok(depths.iter().flat_map(color).collect())
+        let [warm, cool] = [Ramp::over(&object, WARM), Ramp::over(&rest, COOL)];
+        let color = |(depth, rest): (&f32, &f32)| match *depth {
+            1.0.. => [9, 11, 17, 255],
+            depth if depth < rest - 1e-6 => warm.color(depth),
+            depth => cool.color(depth),
+        };
+        Ok(depths.iter().zip(&rest).flat_map(color).collect())
     }
 
     /// A map of one value a texel, 0..1, around the object, in grey.
@@ -212,14 +217,16 @@ impl<'a> Easel<'a> {
             let uv = Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
             (least, greatest) = (least.min(uv), greatest.max(uv));
         }
-        let texel = Vec2::new(width as f32, height as f32);
-        let (middle, extent) = (0.5 * (least + greatest) * texel, (greatest - least) * texel * 1.1);
+        // Texels need not be square.
+        let [across, down] = shadow_map_extent(&matrix, 1.0);
+        let (metres, texel) = (Vec2::new(across, down), Vec2::new(width as f32, height as f32));
+        let (middle, extent) = (0.5 * (least + greatest), (greatest - least) * metres * 1.12);
         let [wide, high] = self.size;
-        let step = (extent.x / wide as f32).max(extent.y / high as f32);
+        let step = (extent.x / wide as f32).max(extent.y / high as f32) / metres;
         let at = |x: u32, y: u32| {
             let from_middle =
                 Vec2::new(x as f32 + 0.5 - 0.5 * wide as f32, y as f32 + 0.5 - 0.5 * high as f32);
-            let place = (middle + from_middle * step).floor();
+            let place = ((middle + from_middle * step) * texel).floor();
             let inside = place.cmpge(Vec2::ZERO).all() && place.cmplt(texel).all();
             if inside { texels[place.y as usize * width as usize + place.x as usize] } else { 1.0 }
         };
@@ -232,21 +239,29 @@ impl<'a> Easel<'a> {
     }
 }
 
-/// From pale near the light over rust to slate behind the object; night where nothing blocks.
-fn depth_color(depth: f32, near: f32, far: f32) -> [u8; 4] {
-    const STOPS: [Vec3; 4] = [
-        Vec3::new(255.0, 236.0, 200.0),
-        Vec3::new(224.0, 130.0, 62.0),
-        Vec3::new(110.0, 56.0, 62.0),
-        Vec3::new(38.0, 46.0, 66.0),
-    ];
-    if depth >= 1.0 {
-        return [9, 11, 17, 255];
+const WARM: [Vec3; 3] =
+    [Vec3::new(255.0, 238.0, 205.0), Vec3::new(226.0, 132.0, 62.0), Vec3::new(112.0, 50.0, 48.0)];
+const COOL: [Vec3; 3] =
+    [Vec3::new(92.0, 116.0, 140.0), Vec3::new(58.0, 74.0, 98.0), Vec3::new(32.0, 40.0, 58.0)];
+
+/// Colours from the least depth that occurs to the greatest of a blocker.
+struct Ramp {
+    near: f32,
+    far: f32,
+    colors: [Vec3; 3],
+}
+
+impl Ramp {
+    fn over(depths: &[f32], colors: [Vec3; 3]) -> Self {
+        let near = depths.iter().copied().fold(1.0, f32::min);
+        let far = depths.iter().copied().filter(|depth| *depth < 1.0).fold(near, f32::max);
+        Self { near, far: far.max(near + 1e-6), colors }
     }
-    let share = (depth - near) / (far - near);
-    let behind = ((depth - far) / (1.0 - far).max(1e-6)).clamp(0.0, 1.0);
-    let place = if share <= 1.0 { 2.0 * share.max(0.0) } else { 2.5 + 0.5 * behind };
-    let stop = (place as usize).min(2);
-    let color = STOPS[stop].lerp(STOPS[stop + 1], place - stop as f32);
-    [color.x as u8, color.y as u8, color.z as u8, 255]
+
+    fn color(&self, depth: f32) -> [u8; 4] {
+        let place = 2.0 * ((depth - self.near) / (self.far - self.near)).clamp(0.0, 1.0);
+        let stop = (place as usize).min(1);
+        let color = self.colors[stop].lerp(self.colors[stop + 1], place - stop as f32);
+        [color.x as u8, color.y as u8, color.z as u8, 255]
+    }
 }

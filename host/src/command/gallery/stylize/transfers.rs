@@ -31,14 +31,12 @@ fn styled(
     Ok(pixels)
 }
 
-/// Shares of the picture's width and height where an artist clicked, and the colour wanted there.
-const PATCH_PICKS: [([f32; 2], f32, f32); 5] = [
-    ([0.5, 0.5], 0.5, 1.0),
-    ([0.1, 0.1], 0.0, 0.0),
-    ([0.9, 0.1], 0.0, 0.0),
-    ([0.1, 0.9], 0.0, 0.0),
-    ([0.9, 0.9], 0.0, 0.0),
-];
+/// Shares of the picture's width and height where an artist clicked, the grey wanted there, and how much of it.
+fn picks() -> Vec<([f32; 2], f32, f32)> {
+    let default = [0.5,0.5,0.5,1.0, 0.1,0.1,0.0,0.0, 0.9,0.1,0.0,0.0, 0.1,0.9,0.0,0.0, 0.9,0.9,0.0,0.0];
+    let values: Vec<f32> = std::env::var("PICKS").ok().map(|t| t.split(',').filter_map(|v| v.parse().ok()).collect()).unwrap_or(default.to_vec());
+    values.chunks_exact(4).map(|v| ([v[0], v[1]], v[2], v[3])).collect()
+}
 
 /// A dark patch removed.
 pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
@@ -50,13 +48,13 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         Place::Pixel([at(x, width), at(y, height)])
     };
-    let constraints = PATCH_PICKS.map(|([x, y], grey, alpha)| Constraint {
+    let constraints = picks().into_iter().map(|([x, y], grey, alpha)| Constraint {
         place: picked(x, y),
         color: Color { rgb: Vec3::splat(grey), alpha },
-    });
+    }).collect::<Vec<_>>();
     let removed = lift.try_map(|transfer| {
         let mut transfer = transfer.clone();
-        let source = Source::Diffusion(constraints.to_vec());
+        let source = Source::Diffusion(constraints.clone());
         transfer.layers.push(Layer { blend: Blend::Over, ..Layer::new(source) });
         Ok::<_, CommandError>(transfer)
     })?;
@@ -91,7 +89,7 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
 
 /// Styles, and scenes that they move across.
 const STYLES: [(&str, styles::Style); 3] = [("Alarm", ALARM), ("Dusk", DUSK), ("Underwater", UNDERWATER)];
-const SCENES: [&str; 3] = ["canopy", "terrain", "spot"];
+const SCENES: [&str; 3] = ["foliage", "terrain", "cascades"];
 
 /// Functions that move from scene to scene.
 pub fn transfer(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
@@ -102,7 +100,7 @@ pub fn transfer(studio: &Studio, folder: &str) -> Result<Section, CommandError> 
     for name in SCENES {
         let easel = Easel::new(studio, name, 2048)?;
         let holes = canopy_holes();
-        let change = if name == "canopy" { Change::holes(holes) } else { Change::default() };
+        let change = if name == "foliage" { Change::holes(holes) } else { Change::default() };
         let shadows = easel.shadows(&change)?;
         let inputs = shadows.inputs(&easel.stage.inputs());
         let scattered = easel.scatter(&inputs)?;
