@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Files that the command reads and writes: arrays and pictures. Every file is written whole or not at all.
+//! Files that the command reads and writes: arrays, pictures and animations. Every file is written whole or not at all.
 
+mod animation;
 mod array;
 mod npy;
 mod picture;
 mod whole;
 
+pub use animation::write_animation;
 pub use array::{Array, ArrayData};
 pub use npy::{ArrayError, read_npy, write_npy};
 pub use picture::{write_exr, write_png};

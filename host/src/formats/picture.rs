@@ -11,7 +11,13 @@ use image::{ExtendedColorType, ImageEncoder};
 use super::whole::{WriteError, write_whole};
 
 /// Number of channels of `length` values for `width` x `height` pixels, if it is one of `allowed`.
-fn channels(path: &Path, width: u32, height: u32, length: usize, allowed: &[u64]) -> Result<u64, WriteError> {
+pub(super) fn channels(
+    path: &Path,
+    width: u32,
+    height: u32,
+    length: usize,
+    allowed: &[u64],
+) -> Result<u64, WriteError> {
     let pixels = u64::from(width) * u64::from(height);
     let found = allowed.iter().copied().find(|c| pixels.checked_mul(*c) == Some(length as u64));
     found.filter(|_| pixels > 0).ok_or_else(|| WriteError::Data {
