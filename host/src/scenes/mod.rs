@@ -4,7 +4,6 @@
 mod lights;
 mod parts;
 mod stylized;
-pub use stylized::knob;
 mod windows;
 
 use crate::core::{Cascades, DepthRange, PerspectiveView, Sky, View, direction_from_angles};

@@ -11,27 +11,16 @@ use crate::scattering::Medium;
 use crate::stage::Lighting;
 use glam::{Mat4, Quat, Vec2, Vec3};
 
-pub fn knob(name: &str, default: f32) -> f32 {
-    std::env::var("KNOBS")
-        .ok()
-        .and_then(|all| {
-            all.split(',').find_map(|pair| {
-                let (key, value) = pair.split_once('=')?;
-                (key == name).then(|| value.parse().ok()).flatten()
-            })
-        })
-        .unwrap_or(default)
-}
-
-/// A lamp in the place of the sun, so that only the surroundings of the scene are lit: `radius` metres around `at`, from
-/// `distance` metres away in a direction by azimuth and elevation. The irradiance there is `irradiance`.
-fn beam(at: Vec3, direction: Vec3, distance: f32, radius: f32, irradiance: Vec3) -> Lighting {
+/// A lamp in the place of the sun, so that the air is dark but around `at`: it is `distance` metres away in a direction,
+/// and lights everything within the lesser of two radii around `at`, metres, nothing beyond the other. Without the air
+/// between, the irradiance there is `irradiance`.
+fn beam(at: Vec3, direction: Vec3, distance: f32, radii: [f32; 2], irradiance: Vec3) -> Lighting {
     let degrees = |radius: f32| (radius / distance).atan().to_degrees();
     Lighting::Spot {
         position: at + direction * distance,
         target: at,
-        outer_degrees: degrees(radius),
-        inner_degrees: degrees(knob("soft", 0.75) * radius),
+        outer_degrees: degrees(radii[1]),
+        inner_degrees: degrees(radii[0]),
         intensity: irradiance * distance * distance,
         radius: 0.1,
     }
@@ -40,81 +29,70 @@ fn beam(at: Vec3, direction: Vec3, distance: f32, radius: f32, irradiance: Vec3)
 /// Below a great tree whose crown lets next to no light through.
 pub fn canopy() -> Result<Parts, SceneError> {
     let parameters = TerrainParameters { seed: 11, size: 34.0, resolution: 140, height: 0.7 };
-    let mut rest = terrain(&parameters).with_albedo(Vec3::new(0.10, 0.12, 0.05));
+    let mut rest = terrain(&parameters).with_albedo(Vec3::new(0.055, 0.065, 0.028));
     let ground = |x, z| terrain_height(&parameters, x, z);
     let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.0).with_albedo(Vec3::new(0.72, 0.66, 0.60));
-    let at = Vec2::new(knob("bx", 1.9), knob("bz", 2.4));
-    rest.append(&placed(bunny, Vec3::new(at.x, ground(at.x, at.y) - 0.02, at.y), knob("bt", -20.0)));
+    let at = Vec2::new(1.9, 2.4);
+    rest.append(&placed(bunny, Vec3::new(at.x, ground(at.x, at.y) - 0.02, at.y), -20.0));
     let crown = tree(&TreeParameters {
-        seed: knob("seed", 4.0) as u64,
-        height: knob("th", 7.6),
-        crown_radius: knob("cr", 4.6),
-        leaves: knob("leaves", 46000.0) as u32,
-        leaf_length: knob("ll", 0.2),
-        clumps: knob("clumps", 60.0) as u32,
+        seed: 4,
+        height: 7.6,
+        crown_radius: 4.6,
+        leaves: 80000,
+        leaf_length: 0.2,
+        clumps: 60,
     });
     let object = placed(crown, Vec3::new(0.0, ground(0.0, 0.0) - 0.1, 0.0), 20.0);
     let scene = Scene {
         name: "canopy",
         title: "Below a great tree",
         mesh: Mesh::default(),
-        view: view(
-            Vec3::new(knob("ex", -1.6), knob("ey", 1.3), knob("ez", 11.5)),
-            Vec3::new(knob("tx", 0.5), knob("ty", 3.2), 0.0),
-            knob("fov", 46.0),
-            0.1,
-            40.0,
-        ),
+        view: view(Vec3::new(-1.5, 0.9, 10.5), Vec3::new(1.2, 2.4, 0.0), 46.0, 0.1, 40.0),
         light: beam(
-            Vec3::new(knob("lx", 0.0), knob("ly", 5.0), knob("lz", 0.0)),
-            direction_from_angles(knob("az", 235.0), knob("el", 48.0)),
-            knob("ld", 24.0),
-            knob("lr", 4.4),
-            Vec3::new(1.0, 0.74, 0.42) * knob("li", 16.0),
+            Vec3::new(0.5, 5.0, 0.0),
+            direction_from_angles(222.0, 38.0),
+            40.0,
+            [4.0, 5.0],
+            Vec3::new(75.0, 55.5, 31.5),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10) * knob("sky", 1.0), Vec3::new(0.07, 0.08, 0.10) * knob("sky", 1.0), Vec3::new(0.03, 0.03, 0.025) * knob("sky", 1.0)),
-        medium: Medium::new(knob("ext", 0.045), Vec3::splat(0.96), knob("g", 0.4), 40.0)?,
-        exposure: knob("exp", 0.8),
+        sky: Sky::new(
+            Vec3::new(0.054, 0.09, 0.18),
+            Vec3::new(0.126, 0.144, 0.18),
+            Vec3::new(0.054, 0.054, 0.045),
+        ),
+        medium: Medium::new(0.05, Vec3::splat(0.96), 0.4, 40.0)?,
+        exposure: 0.9,
     };
     Ok(Parts::new(scene, object, rest))
 }
 
 /// A ring in a cone of light from above.
 pub fn ring() -> Result<Parts, SceneError> {
-    let rest = plane(Vec2::splat(26.0), 8).with_albedo(Vec3::splat(knob("floor", 0.06)));
-    let centre = Vec3::new(0.0, knob("ry", 3.5), 0.0);
-    let object = torus(knob("rM", 1.25), knob("rm", 0.75), 192, 72)
+    let rest = plane(Vec2::splat(26.0), 8).with_albedo(Vec3::splat(0.03));
+    let centre = Vec3::new(0.0, 3.5, 0.0);
+    let object = torus(1.3, 0.7, 192, 72)
         .with_albedo(Vec3::new(0.72, 0.16, 0.07))
-        .transformed(Mat4::from_rotation_translation(
-            Quat::from_rotation_x(knob("rt", 12.0).to_radians()),
-            centre,
-        ));
+        .transformed(Mat4::from_rotation_translation(Quat::from_rotation_x(15.0_f32.to_radians()), centre));
     let scene = Scene {
         name: "ring",
         title: "A ring in a cone of light",
         mesh: Mesh::default(),
-        view: view(
-            Vec3::new(0.0, knob("ey", 1.9), knob("ez", 9.5)),
-            Vec3::new(0.0, knob("ty", 2.6), 0.0),
-            knob("fov", 44.0),
-            0.1,
-            30.0,
-        ),
+        view: view(Vec3::new(0.0, 1.0, 8.0), Vec3::new(0.0, 2.7, 0.0), 44.0, 0.1, 30.0),
         light: Lighting::Spot {
-            position: Vec3::new(0.0, knob("ly", 13.5), knob("lz", -0.5)),
-            target: Vec3::new(0.0, 0.0, knob("ltz", -0.5)),
-            outer_degrees: knob("lo", 15.5),
-            inner_degrees: knob("lin", 13.5),
-            intensity: Vec3::new(1.0, 0.86, 0.66) * knob("li", 4200.0),
+            position: Vec3::new(0.0, 22.0, -0.3),
+            target: Vec3::new(0.0, 0.0, -0.3),
+            outer_degrees: 9.5,
+            inner_degrees: 6.2,
+            intensity: Vec3::new(22000.0, 18920.0, 14520.0),
             radius: 0.1,
         },
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.012, 0.016, 0.03) * knob("sky", 1.0), Vec3::new(0.02, 0.026, 0.045) * knob("sky", 1.0), Vec3::splat(0.012) * knob("sky", 1.0)),
-        medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.95), knob("g", 0.1), 30.0)?,
-        exposure: knob("exp", 0.7),
+        sky: Sky::new(Vec3::new(0.012, 0.016, 0.03), Vec3::new(0.02, 0.026, 0.045), Vec3::splat(0.012)),
+        medium: Medium::new(0.07, Vec3::splat(0.95), 0.1, 30.0)?,
+        exposure: 0.8,
     };
     Ok(Parts::new(scene, object, rest))
 }
@@ -124,30 +102,28 @@ pub fn halo() -> Result<Parts, SceneError> {
     let parameters = TerrainParameters { seed: 8, size: 30.0, resolution: 120, height: 0.8 };
     let rest = terrain(&parameters).with_albedo(Vec3::new(0.09, 0.08, 0.07));
     let head = standing(mesh_from_bytes(SUZANNE.0, SUZANNE.1)?, 2.2).with_albedo(Vec3::new(0.50, 0.30, 0.18));
-    let object = placed(head, Vec3::new(0.0, terrain_height(&parameters, 0.0, 0.0) + knob("hy", 0.9), 0.0), knob("ht", -12.0));
+    let object = placed(head, Vec3::new(0.0, terrain_height(&parameters, 0.0, 0.0) + 0.9, 0.0), 20.0);
     let scene = Scene {
         name: "halo",
         title: "A head before the sun",
         mesh: Mesh::default(),
-        view: view(
-            Vec3::new(knob("ex", 0.3), knob("ey", 1.5), knob("ez", 5.6)),
-            Vec3::new(0.0, knob("ty", 1.9), 0.0),
-            knob("fov", 48.0),
-            0.1,
-            30.0,
-        ),
+        view: view(Vec3::new(0.3, 1.2, 5.0), Vec3::new(0.0, 1.9, 0.0), 48.0, 0.1, 30.0),
         light: beam(
-            Vec3::new(knob("lx", 0.0), knob("ly", 2.2), knob("lz", 0.0)),
-            direction_from_angles(knob("az", 183.0), knob("el", 12.0)),
-            knob("ld", 9.0),
-            knob("lr", 2.4),
-            Vec3::new(1.0, 0.78, 0.46) * knob("li", 14.0),
+            Vec3::new(0.0, 2.2, 0.0),
+            direction_from_angles(183.0, 22.0),
+            9.0,
+            [1.8, 2.4],
+            Vec3::new(20.0, 15.6, 9.2),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.02, 0.03, 0.06) * knob("sky", 1.0), Vec3::new(0.06, 0.06, 0.07) * knob("sky", 1.0), Vec3::new(0.02, 0.02, 0.02) * knob("sky", 1.0)),
-        medium: Medium::new(knob("ext", 0.05), Vec3::splat(0.96), knob("g", 0.5), 40.0)?,
-        exposure: knob("exp", 0.5),
+        sky: Sky::new(
+            Vec3::new(0.044, 0.066, 0.132),
+            Vec3::new(0.132, 0.132, 0.154),
+            Vec3::new(0.044, 0.044, 0.044),
+        ),
+        medium: Medium::new(0.05, Vec3::splat(0.96), 0.5, 40.0)?,
+        exposure: 0.55,
     };
     Ok(Parts::new(scene, object, rest))
 }
@@ -157,31 +133,29 @@ pub fn leap() -> Result<Parts, SceneError> {
     let parameters = TerrainParameters { seed: 8, size: 30.0, resolution: 120, height: 0.5 };
     let rest = terrain(&parameters).with_albedo(Vec3::new(0.10, 0.11, 0.06));
     let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 1.7).with_albedo(Vec3::new(0.70, 0.60, 0.52));
-    let turn = Quat::from_rotation_z(knob("bz", 18.0).to_radians()) * Quat::from_rotation_y(knob("bt", 75.0).to_radians());
-    let object = bunny.transformed(Mat4::from_rotation_translation(turn, Vec3::new(knob("bx", 1.6), knob("by", 1.7), 0.0)));
+    let turn = Quat::from_rotation_z(18.0_f32.to_radians()) * Quat::from_rotation_y(75.0_f32.to_radians());
+    let object = bunny.transformed(Mat4::from_rotation_translation(turn, Vec3::new(1.2, 1.7, 0.0)));
     let scene = Scene {
         name: "leap",
         title: "A leaping bunny",
         mesh: Mesh::default(),
-        view: view(
-            Vec3::new(knob("ex", -0.6), knob("ey", 1.6), knob("ez", 7.6)),
-            Vec3::new(knob("tx", -0.2), knob("ty", 1.9), 0.0),
-            knob("fov", 44.0),
-            0.1,
-            30.0,
-        ),
+        view: view(Vec3::new(-0.6, 1.6, 7.6), Vec3::new(-0.3, 2.1, 0.0), 33.0, 0.1, 30.0),
         light: beam(
-            Vec3::new(knob("lx", 1.0), knob("ly", 2.0), knob("lz", 0.0)),
-            direction_from_angles(knob("az", 96.0), knob("el", 15.0)),
-            knob("ld", 12.0),
-            knob("lr", 1.9),
-            Vec3::new(1.0, 0.80, 0.52) * knob("li", 14.0),
+            Vec3::new(1.1, 2.3, 0.0),
+            direction_from_angles(104.0, 14.0),
+            25.0,
+            [1.08, 1.35],
+            Vec3::new(55.0, 44.0, 28.6),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10) * knob("sky", 1.0), Vec3::new(0.06, 0.07, 0.09) * knob("sky", 1.0), Vec3::new(0.03, 0.03, 0.025) * knob("sky", 1.0)),
-        medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.96), knob("g", 0.1), 40.0)?,
-        exposure: knob("exp", 0.8),
+        sky: Sky::new(
+            Vec3::new(0.042, 0.07, 0.14),
+            Vec3::new(0.084, 0.098, 0.126),
+            Vec3::new(0.042, 0.042, 0.035),
+        ),
+        medium: Medium::new(0.06, Vec3::splat(0.96), 0.2, 40.0)?,
+        exposure: 0.8,
     };
     Ok(Parts::new(scene, object, rest))
 }
@@ -192,30 +166,24 @@ pub fn hare() -> Result<Parts, SceneError> {
     let rest = terrain(&parameters).with_albedo(Vec3::new(0.09, 0.10, 0.06));
     let ground = terrain_height(&parameters, 0.0, 0.0);
     let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 2.4).with_albedo(Vec3::new(0.62, 0.55, 0.48));
-    let object = placed(bunny, Vec3::new(0.0, ground - 0.04, 0.0), knob("bt", 25.0));
+    let object = placed(bunny, Vec3::new(0.0, ground - 0.04, 0.0), 25.0);
     let scene = Scene {
         name: "hare",
         title: "A bunny against the light",
         mesh: Mesh::default(),
-        view: view(
-            Vec3::new(knob("ex", 0.9), knob("ey", 1.0), knob("ez", 6.8)),
-            Vec3::new(knob("tx", 0.6), knob("ty", 1.55), 0.0),
-            knob("fov", 44.0),
-            0.1,
-            30.0,
-        ),
+        view: view(Vec3::new(0.9, 1.0, 6.8), Vec3::new(0.6, 1.55, 0.0), 40.0, 0.1, 30.0),
         light: beam(
-            Vec3::new(knob("lx", 0.0), knob("ly", 1.3), knob("lz", 0.0)),
-            direction_from_angles(knob("az", 250.0), knob("el", 36.0)),
-            knob("ld", 14.0),
-            knob("lr", 2.4),
-            Vec3::new(1.0, 0.76, 0.45) * knob("li", 14.0),
+            Vec3::new(0.0, 1.3, 0.0),
+            direction_from_angles(245.0, 36.0),
+            14.0,
+            [1.95, 2.6],
+            Vec3::new(24.0, 18.24, 10.8),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.03, 0.05, 0.10) * knob("sky", 1.0), Vec3::new(0.07, 0.07, 0.08) * knob("sky", 1.0), Vec3::new(0.03, 0.03, 0.025) * knob("sky", 1.0)),
-        medium: Medium::new(knob("ext", 0.06), Vec3::splat(0.96), knob("g", 0.35), 40.0)?,
-        exposure: knob("exp", 0.7),
+        sky: Sky::new(Vec3::new(0.03, 0.05, 0.1), Vec3::new(0.07, 0.07, 0.08), Vec3::new(0.03, 0.03, 0.025)),
+        medium: Medium::new(0.06, Vec3::splat(0.96), 0.35, 40.0)?,
+        exposure: 0.8,
     };
     Ok(Parts::new(scene, object, rest))
 }
@@ -225,36 +193,30 @@ pub fn turtle() -> Result<Parts, SceneError> {
     let parameters = TerrainParameters { seed: 3, size: 24.0, resolution: 120, height: 0.7 };
     let rest = terrain(&parameters)
         .with_albedo(Vec3::new(0.42, 0.40, 0.30))
-        .transformed(Mat4::from_translation(Vec3::new(0.0, knob("floor", -3.2), 0.0)));
+        .transformed(Mat4::from_translation(Vec3::new(0.0, -3.2, 0.0)));
     let object = turtle_mesh().transformed(Mat4::from_rotation_translation(
-        Quat::from_rotation_y(knob("yaw", -35.0).to_radians())
-            * Quat::from_rotation_x(knob("pitch", -14.0).to_radians())
-            * Quat::from_rotation_z(knob("roll", -12.0).to_radians()),
-        Vec3::new(0.0, knob("y", 0.3), 0.0),
+        Quat::from_rotation_y(-25.0_f32.to_radians())
+            * Quat::from_rotation_x(-18.0_f32.to_radians())
+            * Quat::from_rotation_z(8.0_f32.to_radians()),
+        Vec3::new(0.0, 0.3, 0.0),
     ));
     let scene = Scene {
         name: "turtle",
         title: "A turtle",
         mesh: Mesh::default(),
-        view: view(
-            Vec3::new(knob("ex", 0.6), knob("ey", -0.6), knob("ez", 7.0)),
-            Vec3::new(knob("tx", 0.0), knob("ty", -0.35), 0.0),
-            knob("fov", 42.0),
-            0.1,
-            26.0,
-        ),
+        view: view(Vec3::new(0.6, -1.3, 4.8), Vec3::new(-0.05, 0.08, 0.0), 43.0, 0.1, 26.0),
         light: beam(
-            Vec3::new(knob("lx", 0.0), knob("ly", 0.0), knob("lz", 0.0)),
-            direction_from_angles(knob("az", -35.0), knob("el", 50.0)),
-            knob("ld", 14.0),
-            knob("lr", 3.4),
-            Vec3::new(0.62, 1.0, 0.88) * knob("li", 14.0),
+            Vec3::new(0.0, 0.0, 0.0),
+            direction_from_angles(-28.0, 45.0),
+            12.0,
+            [2.25, 3.0],
+            Vec3::new(19.84, 32.0, 28.16),
         ),
         light_texture: None,
         cascades: None,
-        sky: Sky::new(Vec3::new(0.06, 0.16, 0.19) * knob("sky", 1.0), Vec3::new(0.03, 0.09, 0.12) * knob("sky", 1.0), Vec3::new(0.02, 0.05, 0.06) * knob("sky", 1.0)),
-        medium: Medium::new(knob("ext", 0.085), Vec3::new(0.62, 0.93, 0.95), knob("g", 0.15), 26.0)?,
-        exposure: knob("exp", 0.8),
+        sky: Sky::new(Vec3::new(0.06, 0.16, 0.19), Vec3::new(0.03, 0.09, 0.12), Vec3::new(0.02, 0.05, 0.06)),
+        medium: Medium::new(0.17, Vec3::new(0.62, 0.93, 0.95), 0.15, 26.0)?,
+        exposure: 1.1,
     };
     Ok(Parts::new(scene, object, rest))
 }

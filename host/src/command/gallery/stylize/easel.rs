@@ -9,8 +9,8 @@ use crate::scattering::{Inputs, Prefiltered};
 use crate::scenes::{self, Parts, Scene};
 use crate::stage::PartShadows;
 use crate::stylize::{
-    Baker, HolePattern, Holes, Keyed, PickScene, Restyle, ShadowMaps, ShadowOperator, ShadowStyle,
-    StylizedShadows, Transfer, shadow_map_extent,
+    Baker, HoleError, HoleParameters, HolePattern, Holes, Keyed, PickScene, Restyle, ShadowMaps,
+    ShadowOperator, ShadowStyle, StylizedShadows, Transfer, shadow_map_extent,
 };
 use crate::{Buffer, Stage, Texture};
 use glam::{Mat4, Vec2, Vec3};
@@ -79,17 +79,26 @@ impl<'a> Easel<'a> {
         Ok(Self { studio, size, scene, stage, parts, object, prefiltered })
     }
 
+    /// The holes of a change in each map of the light.
+    pub fn holes(&self, change: &Change<'_>) -> Result<Vec<HoleParameters>, CommandError> {
+        let Some(holes) = change.holes else { return Ok(Vec::new()) };
+        let stage = &self.stage;
+        // Around a lantern with the light in it, its surface counts and not its middle.
+        let distance = self.object.center().distance(stage.light.position).max(0.5 * self.object.radius());
+        let parameters = |matrix: &Mat4| {
+            let extent = shadow_map_extent(matrix, distance);
+            HolePattern::new(&holes, extent, DepthRange::Forward)?.at(change.time)
+        };
+        let matrices = StylizedShadows::matrices(&stage.light, stage.views.as_ref());
+        let all: Result<_, HoleError> = matrices.iter().map(parameters).collect();
+        all.map_err(CommandError::failure)
+    }
+
     /// The shadow maps with a change, not yet recorded.
-    pub fn stylized(&self, change: &Change<'_>) -> Result<StylizedShadows, CommandError> {
+    fn stylized(&self, change: &Change<'_>) -> Result<StylizedShadows, CommandError> {
         let stage = &self.stage;
         let matrices = StylizedShadows::matrices(&stage.light, stage.views.as_ref());
-        let distance = self.object.center().distance(stage.light.position).max(0.5 * self.object.radius());
-        let pattern = |matrix: &Mat4| {
-            let holes = change.holes?;
-            let extent = shadow_map_extent(matrix, distance);
-            Some(HolePattern::new(&holes, extent, DepthRange::Forward).and_then(|holes| holes.at(change.time)))
-        };
-        let holes: Vec<_> = matrices.iter().filter_map(pattern).collect::<Result<_, _>>().map_err(CommandError::failure)?;
+        let holes = self.holes(change)?;
         let drawn = stage.inputs();
         let (maps, rest) = match &self.parts {
             Some([object, rest]) if change.holes.is_some() => {
@@ -185,13 +194,17 @@ impl<'a> Easel<'a> {
         let depths = self.around_object(inputs.shadow_map)?;
         let drawn = &self.stage.pictures.shadow_map;
         let [object, rest] = match &self.parts {
-            Some([object, rest]) => [self.around_object(&object.shadow_map)?, self.around_object(&rest.shadow_map)?],
+            Some([object, rest]) => {
+                [self.around_object(&object.shadow_map)?, self.around_object(&rest.shadow_map)?]
+            }
             None => [self.around_object(drawn)?, vec![1.0; depths.len()]],
         };
         let [warm, cool] = [Ramp::over(&object, WARM), Ramp::over(&rest, COOL)];
+        // The ground is extruded a little, too, where it is seen from the side.
+        let margin = 0.02 * (cool.far - cool.near);
         let color = |(depth, rest): (&f32, &f32)| match *depth {
             1.0.. => [9, 11, 17, 255],
-            depth if depth < rest - 1e-6 => warm.color(depth),
+            depth if depth < rest - margin => warm.color(depth),
             depth => cool.color(depth),
         };
         Ok(depths.iter().zip(&rest).flat_map(color).collect())
@@ -217,6 +230,7 @@ impl<'a> Easel<'a> {
             let uv = Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
             (least, greatest) = (least.min(uv), greatest.max(uv));
         }
+        let (least, greatest) = (least.clamp(Vec2::ZERO, Vec2::ONE), greatest.clamp(Vec2::ZERO, Vec2::ONE));
         // Texels need not be square.
         let [across, down] = shadow_map_extent(&matrix, 1.0);
         let (metres, texel) = (Vec2::new(across, down), Vec2::new(width as f32, height as f32));

@@ -5,7 +5,6 @@ use super::super::album::{Album, Section};
 use super::super::studio::{Studio, parameters};
 use super::{Change, Easel, Tile, tile};
 use crate::command::CommandError;
-use crate::scenes::knob;
 use crate::stylize::{Element, Form, Operator, ShadowOperator, Width};
 
 /// Closes holes by a box or a disc.
@@ -23,7 +22,7 @@ pub fn closing(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let about = "A closing of the shadow map fills holes that its kernel does not fit into, and nothing else. Surfaces \
                  keep the shadows that were drawn.";
     let mut album = Album::new(&studio.out, folder, "Hole filling".to_owned(), about.to_owned())?;
-    for (name, map, texels) in [("ring", 1024, [knob("kr", 241.0), knob("kre", 401.0)]), ("canopy", 1024, [knob("kf", 31.0), knob("kfe", 61.0)])] {
+    for (name, map, texels) in [("ring", 1024, [209.0, 209.0]), ("canopy", 1024, [15.0, 25.0])] {
         let easel = Easel::new(studio, name, map)?;
         let operators: [(&str, String, Vec<ShadowOperator>); 4] = [
             ("drawn", easel.scene.title.to_owned(), vec![]),
@@ -55,7 +54,10 @@ pub fn closing(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         }
         album.fact(name, parameters(&easel.scene));
     }
-    album.finish_with_sheet(4, "As drawn; closed by a box, along view rays, by a disc; below their light and shadow maps")
+    album.finish_with_sheet(
+        4,
+        "As drawn; closed by a box, along view rays, by a disc; below their light and shadow maps",
+    )
 }
 
 /// Silhouette enhancement.
@@ -68,7 +70,7 @@ pub fn extrusion(studio: &Studio, folder: &str) -> Result<Section, CommandError>
     );
     let mut album = Album::new(&studio.out, folder, "Silhouette enhancement".to_owned(), about)?;
     let mut rows: [Vec<Tile>; 3] = Default::default();
-    for (file, texels) in [("drawn", 1.0), ("short", knob("k1", 61.0)), ("long", knob("k2", 301.0))] {
+    for (file, texels) in [("drawn", 1.0), ("short", 81.0), ("long", 301.0)] {
         let operators = [along(Operator::Dilation, texels)];
         let change = Change { operators: &operators[..usize::from(texels > 1.0)], ..Change::default() };
         let shadows = easel.shadows(&change)?;

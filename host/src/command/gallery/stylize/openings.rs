@@ -5,20 +5,11 @@ use super::super::album::{Album, Section};
 use super::super::studio::{Studio, parameters as parameters_of};
 use super::{Change, Easel, Tile, tile};
 use crate::command::CommandError;
-use crate::core::DepthRange;
-use crate::scenes::knob;
-use crate::stylize::{HoleMask, HolePattern, HolePicture, Holes, StylizedShadows, shadow_map_extent};
+use crate::stylize::{HoleMask, HolePicture, Holes};
 
 /// Holes that make shafts of the canopy's scene.
 pub fn canopy_holes() -> Holes {
-    Holes {
-        size: knob("hs", 0.28),
-        density: knob("hd", 0.16),
-        octaves: 3,
-        persistence: 0.5,
-        seed: knob("hseed", 3.0) as u32,
-        ..Holes::default()
-    }
+    Holes { size: 0.32, density: 0.22, octaves: 3, persistence: 0.5, seed: 3, ..Holes::default() }
 }
 
 /// A crown before and after, and the maps between.
@@ -33,9 +24,10 @@ pub fn holes(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     );
     let mut album = Album::new(&studio.out, folder, "Holes in a crown".to_owned(), about)?;
     let mut rows: [Vec<Tile>; 3] = Default::default();
-    for (file, caption, change) in
-        [("before", "As drawn", Change::default()), ("after", "With holes in the crown", Change::holes(holes))]
-    {
+    for (file, caption, change) in [
+        ("before", "As drawn", Change::default()),
+        ("after", "With holes in the crown", Change::holes(holes)),
+    ] {
         let shadows = easel.shadows(&change)?;
         let inputs = shadows.inputs(&easel.stage.inputs());
         if change.holes.is_some() {
@@ -46,15 +38,12 @@ pub fn holes(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         rows[0].push(tile(file, caption, easel.finish(scattered)?));
         rows[2].push(tile(&format!("{file}_map"), "Shadow map of the whole scene", easel.map(&inputs)?));
     }
-    let matrices = StylizedShadows::matrices(&easel.stage.light, None);
-    let extent = shadow_map_extent(&matrices[0], 1.0);
-    let parameters = HolePattern::new(&holes, extent, DepthRange::Forward)
-        .and_then(|pattern| pattern.at(0.0))
-        .map_err(CommandError::failure)?;
+    let parameters = easel.holes(&Change::holes(holes))?[0];
     let mut masks = Vec::new();
-    for (file, caption, picture) in
-        [("noise", "Noise", HolePicture::Noise), ("mask", "Where it is below the threshold", HolePicture::Mask)]
-    {
+    for (file, caption, picture) in [
+        ("noise", "Noise", HolePicture::Noise),
+        ("mask", "Where it is below the threshold", HolePicture::Mask),
+    ] {
         let mask = HoleMask::new(&studio.gpu, &studio.shaders, picture, &parameters, [2048, 2048])
             .map_err(CommandError::failure)?;
         let mut encoder = studio.gpu.encoder();
@@ -66,7 +55,10 @@ pub fn holes(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     for (file, caption, pixels) in pictures.iter().chain(&lights).chain(&masks).chain(&maps) {
         album.add_tile(file, caption, studio.size, pixels)?;
     }
-    album.finish_with_sheet(2, "Before and after; their light; noise and mask; the shadow map before and after")
+    album.finish_with_sheet(
+        2,
+        "Before and after; their light; noise and mask; the shadow map before and after",
+    )
 }
 
 /// Size by density.
@@ -74,9 +66,10 @@ pub fn parameters(studio: &Studio, folder: &str) -> Result<Section, CommandError
     const SIZES: [f32; 4] = [0.9, 0.45, 0.22, 0.1];
     const DENSITIES: [f32; 4] = [0.04, 0.1, 0.2, 0.35];
     let easel = Easel::new(studio, "canopy", 1024)?;
-    let about = "Density grows to the right, holes shrink downwards: large ones make few bold shafts, the smallest \
+    let about =
+        "Density grows to the right, holes shrink downwards: large ones make few bold shafts, the smallest \
                  average out to a haze."
-        .to_owned();
+            .to_owned();
     let mut album = Album::new(&studio.out, folder, "Size and density of holes".to_owned(), about)?;
     for (row, size) in SIZES.into_iter().enumerate() {
         for (column, density) in DENSITIES.into_iter().enumerate() {
@@ -90,21 +83,21 @@ pub fn parameters(studio: &Studio, folder: &str) -> Result<Section, CommandError
 
 /// Holes in a head before the sun.
 pub fn halo(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
-    let holes = Holes { size: knob("hs", 0.16), density: knob("hd", 0.3), octaves: 2, seed: knob("hseed", 5.0) as u32, ..Holes::default() };
+    let holes = Holes { size: 0.12, density: 0.3, octaves: 2, seed: 5, ..Holes::default() };
     let about = "Holes in the shadow of a head that hides the sun: rays burst around it.";
     before_and_after(studio, folder, "halo", ("A halo", about), holes)
 }
 
 /// Holes in a leaping bunny.
 pub fn motion(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
-    let holes = Holes { size: knob("hs", 0.12), density: knob("hd", 0.42), octaves: 2, seed: knob("hseed", 2.0) as u32, ..Holes::default() };
+    let holes = Holes { size: 0.17, density: 0.45, octaves: 2, seed: 2, ..Holes::default() };
     let about = "Holes in the shadow that trails behind the bunny: streaks, as comics draw speed.";
     before_and_after(studio, folder, "leap", ("The illusion of motion", about), holes)
 }
 
 /// Holes in a pierced lantern, six faces.
 pub fn lantern(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
-    let holes = Holes { size: knob("hs", 0.05), density: knob("hd", 0.12), octaves: 2, seed: knob("hseed", 2.0) as u32, ..Holes::default() };
+    let holes = Holes { size: 0.03, density: 0.12, octaves: 2, seed: 2, ..Holes::default() };
     let about = "Holes in the lantern's shadow in all six maps of a point light: finer rays between those of its own holes.";
     before_and_after(studio, folder, "lamp", ("Holes in a lantern", about), holes)
 }

@@ -17,6 +17,5 @@ pub const UNDERWATER: Style = ("underwater.toml", include_str!("../../../../styl
 pub const LIFT: Style = ("lift.toml", include_str!("../../../../styles/lift.toml"));
 /// The function of a style.
 pub fn read((name, text): Style) -> Result<Keyed<Transfer>, CommandError> {
-    if let Ok(folder) = std::env::var("STYLES") { let path = format!("{folder}/{name}"); let text = std::fs::read_to_string(&path).map_err(CommandError::failure)?; return parse_transfer(path, &text).map_err(CommandError::failure); }
     parse_transfer(format!("host/styles/{name}"), text).map_err(CommandError::failure)
 }

@@ -8,7 +8,6 @@ use super::openings::canopy_holes;
 use super::styles::{self, ALARM, DUSK, LIFT, UNDERWATER};
 use super::{Change, Easel, Tile, plates, tile};
 use crate::command::CommandError;
-use crate::scenes::knob;
 use crate::stylize::{
     Baker, Blend, Color, Constraint, Element, Keyed, Layer, Place, Source, StylizedShadows, Transfer,
 };
@@ -31,12 +30,17 @@ fn styled(
     Ok(pixels)
 }
 
-/// Shares of the picture's width and height where an artist clicked, the grey wanted there, and how much of it.
-fn picks() -> Vec<([f32; 2], f32, f32)> {
-    let default = [0.5,0.5,0.5,1.0, 0.1,0.1,0.0,0.0, 0.9,0.1,0.0,0.0, 0.1,0.9,0.0,0.0, 0.9,0.9,0.0,0.0];
-    let values: Vec<f32> = std::env::var("PICKS").ok().map(|t| t.split(',').filter_map(|v| v.parse().ok()).collect()).unwrap_or(default.to_vec());
-    values.chunks_exact(4).map(|v| ([v[0], v[1]], v[2], v[3])).collect()
-}
+/// Where an artist clicked, shares of the picture's width and height; the grey wanted there, and how much of it.
+const PICKS: [([f32; 2], f32, f32); 6] = [
+    // In the patch.
+    ([0.47, 0.42], 0.72, 1.0),
+    ([0.44, 0.53], 0.72, 1.0),
+    // On the turtle beside it, in lit water, in its shadow.
+    ([0.62, 0.42], 0.5, 1.0),
+    ([0.33, 0.60], 0.5, 1.0),
+    ([0.20, 0.40], 0.5, 0.0),
+    ([0.60, 0.80], 0.6, 0.0),
+];
 
 /// A dark patch removed.
 pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
@@ -48,13 +52,13 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         Place::Pixel([at(x, width), at(y, height)])
     };
-    let constraints = picks().into_iter().map(|([x, y], grey, alpha)| Constraint {
+    let constraints = PICKS.map(|([x, y], grey, alpha)| Constraint {
         place: picked(x, y),
         color: Color { rgb: Vec3::splat(grey), alpha },
-    }).collect::<Vec<_>>();
+    });
     let removed = lift.try_map(|transfer| {
         let mut transfer = transfer.clone();
-        let source = Source::Diffusion(constraints.clone());
+        let source = Source::Diffusion(constraints.to_vec());
         transfer.layers.push(Layer { blend: Blend::Over, ..Layer::new(source) });
         Ok::<_, CommandError>(transfer)
     })?;
@@ -63,7 +67,7 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         parameters(&easel.scene)
     );
     let mut album = Album::new(&studio.out, folder, "A dark patch removed".to_owned(), about)?;
-    let operators = [closing_across(Element::Disc, knob("k", 121.0))];
+    let operators = [closing_across(Element::Disc, 101.0)];
     let closed = Change { operators: &operators, ..Change::default() };
     let [drawn, closed] = [easel.shadows(&Change::default())?, easel.shadows(&closed)?];
     let plain = |shadows: &StylizedShadows| {
@@ -80,11 +84,18 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     ];
     let inputs = closed.inputs(&easel.stage.inputs());
     let scattered = easel.scatter(&inputs)?;
-    tiles.push(tile("rays", "Amber: lit share of each ray; blue: its length", plates::rays(&studio.gpu, &easel, scattered)?));
+    tiles.push(tile(
+        "rays",
+        "Amber: lit share of each ray; blue: its length",
+        plates::rays(&studio.gpu, &easel, scattered)?,
+    ));
     for (file, caption, pixels) in &tiles {
         album.add_tile(file, caption, studio.size, pixels)?;
     }
-    album.finish_with_sheet(4, "As drawn, holes filled, shadows lifted, patch removed; maps, and what the functions read")
+    album.finish_with_sheet(
+        4,
+        "As drawn, holes filled, shadows lifted, patch removed; maps, and what the functions read",
+    )
 }
 
 /// Styles, and scenes that they move across.
@@ -96,17 +107,20 @@ pub fn transfer(studio: &Studio, folder: &str) -> Result<Section, CommandError> 
     let baker = Baker::new(&studio.gpu, &studio.shaders).map_err(CommandError::failure)?;
     let about = "Three functions, copied from scene to scene as they are. Each scene as it is, what functions read of it \
                  (amber: lit share of each ray; blue: its length), and through each function, which lies in the corner.";
-    let mut album = Album::new(&studio.out, folder, "One function, three scenes".to_owned(), about.to_owned())?;
+    let mut album =
+        Album::new(&studio.out, folder, "One function, three scenes".to_owned(), about.to_owned())?;
     for name in SCENES {
         let easel = Easel::new(studio, name, 2048)?;
-        let holes = canopy_holes();
-        let change = if name == "foliage" { Change::holes(holes) } else { Change::default() };
-        let shadows = easel.shadows(&change)?;
+        let shadows = easel.shadows(&Change::default())?;
         let inputs = shadows.inputs(&easel.stage.inputs());
         let scattered = easel.scatter(&inputs)?;
         let mut tiles = vec![
             tile(&format!("{name}_physical"), easel.scene.title, easel.finish(scattered)?),
-            tile(&format!("{name}_rays"), "What functions read", plates::rays(&studio.gpu, &easel, scattered)?),
+            tile(
+                &format!("{name}_rays"),
+                "What functions read",
+                plates::rays(&studio.gpu, &easel, scattered)?,
+            ),
         ];
         for (title, style) in STYLES {
             let file = format!("{name}_{}", title.to_lowercase());
@@ -126,7 +140,7 @@ pub fn combined(studio: &Studio, folder: &str) -> Result<Section, CommandError> 
     let easel = Easel::new(studio, "canopy", 1024)?;
     let about = format!("Shafts simplified by hole filling, then coloured. {}", parameters(&easel.scene));
     let mut album = Album::new(&studio.out, folder, "Hole filling and a function".to_owned(), about)?;
-    let operators = [closing_across(Element::Disc, knob("k", 25.0))];
+    let operators = [closing_across(Element::Disc, 15.0)];
     let holes = Change::holes(canopy_holes());
     let closed = Change { operators: &operators, ..holes };
     let style = styles::read(DUSK)?;
