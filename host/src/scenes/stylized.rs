@@ -38,9 +38,9 @@ pub fn canopy() -> Result<Parts, SceneError> {
         seed: 4,
         height: 7.6,
         crown_radius: 4.6,
-        leaves: 80000,
-        leaf_length: 0.2,
-        clumps: 60,
+        leaves: 110000,
+        leaf_length: 0.22,
+        clumps: 150,
     });
     let object = placed(crown, Vec3::new(0.0, ground(0.0, 0.0) - 0.1, 0.0), 20.0);
     let scene = Scene {
@@ -49,10 +49,10 @@ pub fn canopy() -> Result<Parts, SceneError> {
         mesh: Mesh::default(),
         view: view(Vec3::new(-1.5, 0.9, 10.5), Vec3::new(1.2, 2.4, 0.0), 46.0, 0.1, 40.0),
         light: beam(
-            Vec3::new(0.5, 5.0, 0.0),
+            Vec3::new(0.8, 5.0, 0.0),
             direction_from_angles(222.0, 38.0),
             40.0,
-            [4.0, 5.0],
+            [3.7, 4.7],
             Vec3::new(75.0, 55.5, 31.5),
         ),
         light_texture: None,

@@ -191,13 +191,13 @@ impl<'a> Easel<'a> {
     /// The shadow map that `inputs` have, around the object and in the shape of a picture: the object and what is new in
     /// warm colours, everything else in cool ones, the paler the nearer to the light.
     pub fn map(&self, inputs: &Inputs<'_>) -> Result<Vec<u8>, CommandError> {
-        let depths = self.around_object(inputs.shadow_map)?;
+        let depths = self.around_object(inputs.shadow_map, 1.0)?;
         let drawn = &self.stage.pictures.shadow_map;
         let [object, rest] = match &self.parts {
             Some([object, rest]) => {
-                [self.around_object(&object.shadow_map)?, self.around_object(&rest.shadow_map)?]
+                [self.around_object(&object.shadow_map, 1.0)?, self.around_object(&rest.shadow_map, 1.0)?]
             }
-            None => [self.around_object(drawn)?, vec![1.0; depths.len()]],
+            None => [self.around_object(drawn, 1.0)?, vec![1.0; depths.len()]],
         };
         let [warm, cool] = [Ramp::over(&object, WARM), Ramp::over(&rest, COOL)];
         // The ground is extruded a little, too, where it is seen from the side.
@@ -216,11 +216,11 @@ impl<'a> Easel<'a> {
             let value = (value.clamp(0.0, 1.0) * 255.0).round() as u8;
             [value, value, value, 255]
         };
-        Ok(self.around_object(map)?.iter().flat_map(grey).collect())
+        Ok(self.around_object(map, 0.0)?.iter().flat_map(grey).collect())
     }
 
-    /// Texels around the object, in the shape of a picture, the nearest to each pixel.
-    fn around_object(&self, map: &Texture) -> Result<Vec<f32>, CommandError> {
+    /// Texels around the object, in the shape of a picture, the nearest to each pixel; `beyond` the map.
+    fn around_object(&self, map: &Texture, beyond: f32) -> Result<Vec<f32>, CommandError> {
         let [width, height, _] = map.size();
         let texels = map.read(&self.studio.gpu)?;
         let matrix = self.stage.light.clip_from_world;
@@ -242,7 +242,7 @@ impl<'a> Easel<'a> {
                 Vec2::new(x as f32 + 0.5 - 0.5 * wide as f32, y as f32 + 0.5 - 0.5 * high as f32);
             let place = ((middle + from_middle * step) * texel).floor();
             let inside = place.cmpge(Vec2::ZERO).all() && place.cmplt(texel).all();
-            if inside { texels[place.y as usize * width as usize + place.x as usize] } else { 1.0 }
+            if inside { texels[place.y as usize * width as usize + place.x as usize] } else { beyond }
         };
         Ok((0..high).flat_map(|y| (0..wide).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect())
     }

@@ -22,7 +22,7 @@ pub fn closing(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let about = "A closing of the shadow map fills holes that its kernel does not fit into, and nothing else. Surfaces \
                  keep the shadows that were drawn.";
     let mut album = Album::new(&studio.out, folder, "Hole filling".to_owned(), about.to_owned())?;
-    for (name, map, texels) in [("ring", 1024, [209.0, 209.0]), ("canopy", 1024, [15.0, 25.0])] {
+    for (name, map, texels) in [("ring", 1024, [209.0, 209.0]), ("canopy", 1024, [25.0, 41.0])] {
         let easel = Easel::new(studio, name, map)?;
         let operators: [(&str, String, Vec<ShadowOperator>); 4] = [
             ("drawn", easel.scene.title.to_owned(), vec![]),
@@ -40,7 +40,8 @@ pub fn closing(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
             let shadows = easel.shadows(&change)?;
             let inputs = shadows.inputs(&easel.stage.inputs());
             let file = format!("{name}_{file}");
-            if !operators.is_empty() {
+            // A disc that fills the ring takes seconds without a GPU.
+            if !(operators.is_empty() || name == "ring" && file.ends_with("disc")) {
                 let time = easel.time(&shadows)?;
                 album.fact(format!("{name}: {caption}, map of {map}x{map}"), format!("{time:.1} ms"));
             }

@@ -19,3 +19,27 @@ pub const LIFT: Style = ("lift.toml", include_str!("../../../../styles/lift.toml
 pub fn read((name, text): Style) -> Result<Keyed<Transfer>, CommandError> {
     parse_transfer(format!("host/styles/{name}"), text).map_err(CommandError::failure)
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_style_that_ships_is_known_and_sound() {
+        let known = [ALARM, DUSK, UNDERWATER, LIFT];
+        for style in known {
+            for (_, transfer) in read(style).unwrap().keys() {
+                assert!(transfer.check().is_ok(), "{}", style.0);
+            }
+            assert!(style.1.lines().nth(1).unwrap().starts_with("# "), "{} says what it is", style.0);
+        }
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/styles");
+        let mut files: Vec<_> =
+            std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name()).collect();
+        files.sort();
+        let mut names = known.map(|(name, _)| name);
+        names.sort_unstable();
+        assert_eq!(files, names);
+    }
+}

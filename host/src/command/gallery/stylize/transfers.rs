@@ -31,15 +31,17 @@ fn styled(
 }
 
 /// Where an artist clicked, shares of the picture's width and height; the grey wanted there, and how much of it.
-const PICKS: [([f32; 2], f32, f32); 6] = [
-    // In the patch.
-    ([0.47, 0.42], 0.72, 1.0),
-    ([0.44, 0.53], 0.72, 1.0),
-    // On the turtle beside it, in lit water, in its shadow.
-    ([0.62, 0.42], 0.5, 1.0),
-    ([0.33, 0.60], 0.5, 1.0),
-    ([0.20, 0.40], 0.5, 0.0),
-    ([0.60, 0.80], 0.6, 0.0),
+const PICKS: [([f32; 2], f32, f32); 7] = [
+    // From the middle of the patch to its border.
+    ([0.45, 0.56], 0.68, 1.0),
+    ([0.44, 0.47], 0.61, 1.0),
+    ([0.56, 0.47], 0.54, 1.0),
+    // Where the turtle is lit all along.
+    ([0.50, 0.31], 0.50, 1.0),
+    // Water behind it, lit and in shadow, stays as it was.
+    ([0.56, 0.81], 0.0, 0.0),
+    ([0.56, 0.14], 0.0, 0.0),
+    ([0.25, 0.80], 0.0, 0.0),
 ];
 
 /// A dark patch removed.
