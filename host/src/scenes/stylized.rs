@@ -63,7 +63,7 @@ pub fn canopy() -> Result<Parts, SceneError> {
             Vec3::new(0.054, 0.054, 0.045),
         ),
         medium: Medium::new(0.05, Vec3::splat(0.96), 0.4, 40.0)?,
-        exposure: 0.9,
+        exposure: 1.3,
     };
     Ok(Parts::new(scene, object, rest))
 }

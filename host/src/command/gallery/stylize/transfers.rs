@@ -30,18 +30,20 @@ fn styled(
     Ok(pixels)
 }
 
-/// Where an artist clicked, shares of the picture's width and height; the grey wanted there, and how much of it.
-const PICKS: [([f32; 2], f32, f32); 7] = [
-    // From the middle of the patch to its border.
-    ([0.45, 0.56], 0.68, 1.0),
-    ([0.44, 0.47], 0.61, 1.0),
-    ([0.56, 0.47], 0.54, 1.0),
-    // Where the turtle is lit all along.
-    ([0.50, 0.31], 0.50, 1.0),
-    // Water behind it, lit and in shadow, stays as it was.
-    ([0.56, 0.81], 0.0, 0.0),
-    ([0.56, 0.14], 0.0, 0.0),
-    ([0.25, 0.80], 0.0, 0.0),
+/// Where an artist clicked, shares of the picture's width and height, and the grey wanted there: the more the less of the ray
+/// is lit, so that the light comes out as where all of it is.
+const PICKS: [([f32; 2], f32); 8] = [
+    // Water in the turtle's shadow, from its middle to its border.
+    ([0.56, 0.81], 0.67),
+    ([0.62, 0.81], 0.61),
+    // The same on the turtle, where its head takes the light.
+    ([0.45, 0.56], 0.69),
+    ([0.56, 0.47], 0.54),
+    // What is lit stays as it is: the turtle, water beside and above.
+    ([0.50, 0.31], 0.50),
+    ([0.38, 0.81], 0.50),
+    ([0.25, 0.56], 0.50),
+    ([0.31, 0.31], 0.50),
 ];
 
 /// A dark patch removed.
@@ -54,9 +56,9 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         Place::Pixel([at(x, width), at(y, height)])
     };
-    let constraints = PICKS.map(|([x, y], grey, alpha)| Constraint {
+    let constraints = PICKS.map(|([x, y], grey)| Constraint {
         place: picked(x, y),
-        color: Color { rgb: Vec3::splat(grey), alpha },
+        color: Color::opaque(Vec3::splat(grey)),
     });
     let removed = lift.try_map(|transfer| {
         let mut transfer = transfer.clone();
@@ -65,7 +67,8 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         Ok::<_, CommandError>(transfer)
     })?;
     let about = format!(
-        "Light that is scattered before the turtle has holes between its flippers and a dark patch. {}",
+        "Flippers and head leave gaps in the turtle's shadow, which is a dark patch across its belly and below. Holes are \
+         filled; one function lifts the shadow, another takes the patch away, by constraints at picked pixels. {}",
         parameters(&easel.scene)
     );
     let mut album = Album::new(&studio.out, folder, "A dark patch removed".to_owned(), about)?;
@@ -80,7 +83,7 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         tile("drawn", "As drawn", plain(&drawn)?),
         tile("closed", "Holes filled", plain(&closed)?),
         tile("lifted", "A function that lifts shadows", styled(studio, &baker, &easel, &closed, &lift)?),
-        tile("removed", "Another that removes the patch", styled(studio, &baker, &easel, &closed, &removed)?),
+        tile("removed", "Another that takes the patch away", styled(studio, &baker, &easel, &closed, &removed)?),
         tile("drawn_map", "Shadow map", easel.map(&drawn.inputs(&easel.stage.inputs()))?),
         tile("closed_map", "Shadow map, holes filled", easel.map(&closed.inputs(&easel.stage.inputs()))?),
     ];
@@ -142,7 +145,7 @@ pub fn combined(studio: &Studio, folder: &str) -> Result<Section, CommandError> 
     let easel = Easel::new(studio, "canopy", 1024)?;
     let about = format!("Shafts simplified by hole filling, then coloured. {}", parameters(&easel.scene));
     let mut album = Album::new(&studio.out, folder, "Hole filling and a function".to_owned(), about)?;
-    let operators = [closing_across(Element::Disc, 15.0)];
+    let operators = [closing_across(Element::Box, 41.0)];
     let holes = Change::holes(canopy_holes());
     let closed = Change { operators: &operators, ..holes };
     let style = styles::read(DUSK)?;
