@@ -56,10 +56,8 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         let at = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
         Place::Pixel([at(x, width), at(y, height)])
     };
-    let constraints = PICKS.map(|([x, y], grey)| Constraint {
-        place: picked(x, y),
-        color: Color::opaque(Vec3::splat(grey)),
-    });
+    let constraints = PICKS
+        .map(|([x, y], grey)| Constraint { place: picked(x, y), color: Color::opaque(Vec3::splat(grey)) });
     let removed = lift.try_map(|transfer| {
         let mut transfer = transfer.clone();
         let source = Source::Diffusion(constraints.to_vec());
@@ -83,7 +81,11 @@ pub fn patch(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         tile("drawn", "As drawn", plain(&drawn)?),
         tile("closed", "Holes filled", plain(&closed)?),
         tile("lifted", "A function that lifts shadows", styled(studio, &baker, &easel, &closed, &lift)?),
-        tile("removed", "Another that takes the patch away", styled(studio, &baker, &easel, &closed, &removed)?),
+        tile(
+            "removed",
+            "Another that takes the patch away",
+            styled(studio, &baker, &easel, &closed, &removed)?,
+        ),
         tile("drawn_map", "Shadow map", easel.map(&drawn.inputs(&easel.stage.inputs()))?),
         tile("closed_map", "Shadow map, holes filled", easel.map(&closed.inputs(&easel.stage.inputs()))?),
     ];
