@@ -32,18 +32,15 @@ fn styled(
 
 /// Where an artist clicked, shares of the picture's width and height, and the grey wanted there: the more the less of the ray
 /// is lit, so that the light comes out as where all of it is.
-const PICKS: [([f32; 2], f32); 8] = [
-    // Water in the turtle's shadow, from its middle to its border.
-    ([0.56, 0.81], 0.67),
-    ([0.62, 0.81], 0.61),
-    // The same on the turtle, where its head takes the light.
+const PICKS: [([f32; 2], f32); 5] = [
+    // Water in the turtle's shadow.
+    ([0.56, 0.81], 0.66),
+    // The same on the turtle, where its head takes the light, and beside that.
     ([0.45, 0.56], 0.69),
     ([0.56, 0.47], 0.54),
-    // What is lit stays as it is: the turtle, water beside and above.
+    // What is lit stays as it is: the turtle, and water before the light.
     ([0.50, 0.31], 0.50),
-    ([0.38, 0.81], 0.50),
-    ([0.25, 0.56], 0.50),
-    ([0.31, 0.31], 0.50),
+    ([0.31, 0.31], 0.47),
 ];
 
 /// A dark patch removed.
@@ -117,7 +114,7 @@ pub fn transfer(studio: &Studio, folder: &str) -> Result<Section, CommandError> 
     let mut album =
         Album::new(&studio.out, folder, "One function, three scenes".to_owned(), about.to_owned())?;
     for name in SCENES {
-        let easel = Easel::new(studio, name, 2048)?;
+        let easel = Easel::new(studio, name, 4096)?;
         let shadows = easel.shadows(&Change::default())?;
         let inputs = shadows.inputs(&easel.stage.inputs());
         let scattered = easel.scatter(&inputs)?;
