@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Every intermediate buffer of the scattering pipeline against its snapshot, on small scenes of the
+//! Every intermediate buffer of scattering and of stylization against its snapshot, on small scenes of the
 //! tests' own. `make bless` replaces what has changed; look at the pictures at full size first.
 #![allow(clippy::unwrap_used)]
 
@@ -8,11 +8,19 @@ mod gpu;
 #[path = "support/snapshot.rs"]
 mod snapshot;
 
-use airlight::Texture;
-use airlight::core::Tonemap;
-use airlight::scattering::{Along, BasisFormat, Composite, March, Prefiltered, Settings, Weighting};
+use airlight::core::{DepthRange, Tonemap};
+use airlight::scattering::{
+    Along, BasisFormat, Composite, Inputs, March, Prefiltered, Settings, Visibility, Weighting,
+};
+use airlight::stylize::{
+    Baker, Element, Form, HoleMask, HoleParameters, HolePattern, HolePicture, Holes, Operator, PickScene,
+    Restyle, ShadowMaps, ShadowOperator, ShadowStyle, StylizedShadows, Transfer, TransferError, Width,
+    read_transfer, shadow_map_extent,
+};
+use airlight::{Stage, Texture};
 use gpu::{TestScene, gpu, shaders};
 use snapshot::{Buffer, Mode, Picture, Tolerance, assert_buffer, assert_picture, mode};
+use std::path::Path;
 
 const PICTURE: [u32; 2] = [64, 48];
 const MAP: [u32; 2] = [48, 32];
@@ -96,6 +104,82 @@ fn torus_over_a_plane() {
 #[test]
 fn small_tree_with_the_light_in_the_picture() {
     check("tree", &gpu::small_tree());
+}
+
+/// The stage's shadow map, changed.
+fn stylized(stage: &Stage, holes: &[HoleParameters], operators: &[ShadowOperator]) -> StylizedShadows {
+    let matrices = StylizedShadows::matrices(&stage.light, None);
+    let (style, over) = (ShadowStyle { holes, operators }, (&stage.camera, &matrices[..]));
+    let maps = ShadowMaps::of(&stage.inputs());
+    let shadows = StylizedShadows::new(gpu(), shaders(), &style, over, maps, None).unwrap();
+    let mut encoder = gpu().encoder();
+    shadows.record(&mut encoder);
+    gpu().submit(encoder).unwrap();
+    shadows
+}
+
+#[test]
+fn torus_stylized() {
+    let _turn = gpu::turn();
+    let scene = gpu::torus_over_plane();
+    let stage = scene.stage(PICTURE, SHADOW);
+    let name = |what: &str| format!("torus_stylized_{what}");
+    // As for the maps that are drawn: a texel next to an edge may be another one on another adapter.
+    let sharp = tolerance(1e-4, 0.0, 0.03);
+    let width = |texels| Width::new(texels).unwrap();
+    let closing =
+        ShadowOperator::Across { operator: Operator::Closing, element: Element::Box, width: width(9) };
+    let extrusion =
+        ShadowOperator::Along { operator: Operator::Dilation, form: Form::Rectified, width: width(7) };
+    let closed = stylized(&stage, &[], &[closing]);
+    assert_buffer(&name("closed"), &buffer(&closed.stylized, 0, 1, sharp));
+    let extruded = stylized(&stage, &[], &[extrusion]);
+    assert_buffer(&name("extruded"), &buffer(&extruded.stylized, 0, 1, sharp));
+
+    let holes = Holes { size: 0.8, density: 0.25, octaves: 2, ..Holes::default() };
+    let extent = shadow_map_extent(&stage.light.clip_from_world, 0.0);
+    let parameters = HolePattern::new(&holes, extent, DepthRange::Forward).unwrap().at(0.0).unwrap();
+    let mask = HoleMask::new(gpu(), shaders(), HolePicture::Mask, &parameters, SHADOW).unwrap();
+    let mut encoder = gpu().encoder();
+    mask.record(&mut encoder);
+    gpu().submit(encoder).unwrap();
+    assert_buffer(&name("mask"), &buffer(&mask.mask, 0, 1, sharp));
+    let punched = stylized(&stage, &[parameters], &[]);
+    assert_buffer(&name("punched"), &buffer(&punched.stylized, 0, 1, sharp));
+
+    let settings = Settings {
+        map: MAP,
+        visibility: Visibility::Rank { bits: 8 },
+        epipole_march: false,
+        ..Settings::default()
+    };
+    let method = Prefiltered::new(gpu(), shaders(), settings, PICTURE).unwrap();
+    let inputs: Inputs<'_> = punched.inputs(&stage.inputs());
+    let bound = method.bind(gpu(), &inputs).unwrap();
+    let mut encoder = gpu().encoder();
+    method.record(&mut encoder, &bound);
+    gpu().submit(encoder).unwrap();
+
+    let style = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/transfer/sunset.toml");
+    let small = |transfer: &Transfer| Ok::<_, TransferError>(Transfer { size: 24, ..transfer.clone() });
+    let style = read_transfer(style).unwrap().try_map(small).unwrap();
+    let (camera, medium, movements) = (&stage.camera, &stage.medium, Default::default());
+    let picked = PickScene { camera, medium, inputs, scattered: &method.scattered, movements: &movements };
+    let map = Baker::new(gpu(), shaders()).unwrap().bake_frame(gpu(), &style, 0.0, Some(&picked)).unwrap();
+    assert_buffer(&name("transfer"), &buffer(&map, 0, 4, tolerance(2e-3, 0.005, 0.0)));
+    let function = style.function(0.0, &stage.medium);
+    let restyle = Restyle::new(gpu(), shaders(), &function, &inputs, PICTURE).unwrap();
+    let uniform = airlight::Buffer::uniform(gpu(), &function);
+    let bound = restyle.bind(gpu(), &inputs, &method.scattered, &map, &uniform).unwrap();
+    let mut encoder = gpu().encoder();
+    restyle.record(&mut encoder, &bound);
+    gpu().submit(encoder).unwrap();
+    assert_buffer(&name("restyled"), &buffer(&restyle.restyled, 0, 4, tolerance(4e-3, 0.02, 0.05)));
+
+    let composite = Composite::new(gpu(), shaders()).unwrap();
+    let composed = composite.run(gpu(), &inputs, &stage.pictures.surface, &restyle.restyled).unwrap();
+    let pixels = Tonemap::new(gpu(), shaders()).unwrap().run(gpu(), &composed, 1.0).unwrap();
+    assert_picture(&name("picture"), &gpu().description(), &Picture { size: PICTURE, pixels }, 0.99);
 }
 
 // The machinery itself.

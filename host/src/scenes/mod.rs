@@ -3,6 +3,8 @@
 
 mod lights;
 mod parts;
+mod stylized;
+mod windows;
 
 use crate::core::{Cascades, DepthRange, PerspectiveView, Sky, View, direction_from_angles};
 use crate::data::{
@@ -59,6 +61,26 @@ impl Scene {
     }
 }
 
+/// A scene, and an object in it by itself.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// The whole.
+    pub scene: Scene,
+    /// The object: holes are made in its shadow alone.
+    pub object: Mesh,
+    /// Everything else.
+    pub rest: Mesh,
+}
+
+impl Parts {
+    /// `scene` with both meshes in the place of its own.
+    fn new(scene: Scene, object: Mesh, rest: Mesh) -> Self {
+        let mut mesh = rest.clone();
+        mesh.append(&object);
+        Self { scene: Scene { mesh, ..scene }, object, rest }
+    }
+}
+
 /// Why a scene could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
@@ -71,7 +93,7 @@ pub enum SceneError {
 }
 
 /// The names that [`scene`] knows.
-pub const SCENES: [&str; 11] = [
+pub const SCENES: [&str; 17] = [
     "foliage",
     "terrain",
     "torus",
@@ -83,6 +105,12 @@ pub const SCENES: [&str; 11] = [
     "glass",
     "orthographic",
     "cascades",
+    "canopy",
+    "ring",
+    "halo",
+    "leap",
+    "hare",
+    "turtle",
 ];
 
 /// A scene by name; none if there is no such scene.
@@ -91,17 +119,33 @@ pub const SCENES: [&str; 11] = [
 /// [`SceneError`].
 pub fn scene(name: &str) -> Result<Option<Scene>, SceneError> {
     Ok(Some(match name {
-        "foliage" => foliage()?,
         "terrain" => suzanne_on_terrain()?,
         "torus" => torus_scene()?,
         "plane" => plane_scene()?,
         "sun" => sun()?,
-        "spot" => lights::spot()?,
-        "slide" => lights::slide()?,
-        "lamp" => lights::lamp()?,
-        "glass" => lights::glass()?,
+        "spot" => windows::spot()?,
+        "slide" => windows::slide()?,
+        "glass" => windows::glass()?,
         "orthographic" => lights::orthographic()?,
         "cascades" => lights::cascades()?,
+        _ => return Ok(parts(name)?.map(|parts| parts.scene)),
+    }))
+}
+
+/// A scene by name whose object is known apart from the rest; none if there is no such scene.
+///
+/// # Errors
+/// [`SceneError`].
+pub fn parts(name: &str) -> Result<Option<Parts>, SceneError> {
+    Ok(Some(match name {
+        "foliage" => foliage()?,
+        "lamp" => lights::lamp()?,
+        "canopy" => stylized::canopy()?,
+        "ring" => stylized::ring()?,
+        "halo" => stylized::halo()?,
+        "leap" => stylized::leap()?,
+        "hare" => stylized::hare()?,
+        "turtle" => stylized::turtle()?,
         _ => return Ok(None),
     }))
 }
@@ -127,18 +171,18 @@ fn placed(mesh: Mesh, at: Vec3, turn: f32) -> Mesh {
 }
 
 /// A bunny under a leafy tree, late light through the crown.
-fn foliage() -> Result<Scene, SceneError> {
+fn foliage() -> Result<Parts, SceneError> {
     let parameters = TerrainParameters { seed: 11, size: 44.0, resolution: 160, height: 0.6 };
     let mut mesh = terrain(&parameters).with_albedo(Vec3::new(0.11, 0.13, 0.05));
     let ground = |x, z| terrain_height(&parameters, x, z);
     let crown = tree(&TreeParameters { seed: 4, leaves: 14000, clumps: 30, ..TreeParameters::default() });
-    mesh.append(&placed(crown, Vec3::new(0.4, ground(0.4, -0.6) - 0.05, -0.6), 20.0));
+    let object = placed(crown, Vec3::new(0.4, ground(0.4, -0.6) - 0.05, -0.6), 20.0);
     let bunny = standing(mesh_from_bytes(BUNNY.0, BUNNY.1)?, 0.9).with_albedo(Vec3::new(0.72, 0.66, 0.60));
     mesh.append(&placed(bunny, Vec3::new(-1.35, ground(-1.35, 1.9) - 0.02, 1.9), 25.0));
-    Ok(Scene {
+    let scene = Scene {
         name: "foliage",
         title: "Bunny under a tree",
-        mesh,
+        mesh: Mesh::default(),
         view: view(Vec3::new(-2.3, 1.0, 8.6), Vec3::new(-0.35, 2.85, 0.0), 40.0, 0.1, 30.0),
         light: Lighting::directional(direction_from_angles(184.0, 39.0), Vec3::new(8.4, 6.0, 3.5)),
         light_texture: None,
@@ -146,7 +190,8 @@ fn foliage() -> Result<Scene, SceneError> {
         sky: Sky::new(Vec3::new(0.05, 0.10, 0.20), Vec3::new(0.17, 0.19, 0.22), Vec3::new(0.03, 0.03, 0.025)),
         medium: Medium::new(0.034, Vec3::splat(0.96), 0.6, 40.0)?,
         exposure: 0.62,
-    })
+    };
+    Ok(Parts::new(scene, object, mesh))
 }
 
 /// The same from below the crown, with the sun behind it.
@@ -158,7 +203,7 @@ fn sun() -> Result<Scene, SceneError> {
         light: Lighting::directional(direction_from_angles(184.0, 25.0), Vec3::new(8.4, 6.0, 3.5)),
         medium: Medium::new(0.02, Vec3::splat(0.96), 0.75, 40.0)?,
         exposure: 0.3,
-        ..foliage()?
+        ..foliage()?.scene
     })
 }
 

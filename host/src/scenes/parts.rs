@@ -1,13 +1,32 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pieces of architecture that several scenes are built from.
 
-use crate::data::{DEFAULT_ALBEDO, Mesh, cuboid, sphere};
+use crate::data::{DEFAULT_ALBEDO, Mesh, cuboid, plane, sphere};
 use glam::{Mat4, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
+
+/// Albedo of walls and columns.
+pub const STONE: Vec3 = Vec3::new(0.46, 0.42, 0.37);
 
 /// A block from its least to its greatest corner.
 pub fn block(min: Vec3, max: Vec3, albedo: Vec3) -> Mesh {
     cuboid(max - min).transformed(Mat4::from_translation(0.5 * (min + max))).with_albedo(albedo)
+}
+
+/// A floor of tiles in two colours from the least to the greatest x and z, its top at y = 0.
+pub fn floor(x_min: f32, x_max: f32, z_min: f32, z_max: f32, tile: f32, colors: [Vec3; 2]) -> Mesh {
+    let mut mesh = Mesh::default();
+    let count = |extent: f32| (extent / tile).ceil() as u32;
+    for row in 0..count(z_max - z_min) {
+        for column in 0..count(x_max - x_min) {
+            let corner = Vec3::new(x_min + tile * column as f32, 0.0, z_min + tile * row as f32);
+            let size = Vec2::new(tile.min(x_max - corner.x), tile.min(z_max - corner.z));
+            let middle = corner + Vec3::new(0.5 * size.x, 0.0, 0.5 * size.y);
+            let flat = plane(size, 1).with_albedo(colors[((row + column) % 2) as usize]);
+            mesh.append(&flat.transformed(Mat4::from_translation(middle)));
+        }
+    }
+    mesh
 }
 
 /// A surface of revolution around the y axis from a profile of radius and height, from the foot up.

@@ -2,7 +2,7 @@
 //! The pictures of a section on disk, and the contact sheet of them.
 
 use crate::command::CommandError;
-use crate::formats::{create_folder, write_png};
+use crate::formats::{create_folder, write_animation, write_png};
 use image::RgbaImage;
 use image::imageops::{FilterType, replace, resize};
 use std::path::{Path, PathBuf};
@@ -79,6 +79,22 @@ impl Album {
             let tile = [TILE, (TILE * height).div_ceil(width).max(1)];
             self.tiles.push(resize(&picture, tile[0], tile[1], FilterType::CatmullRom));
         }
+        Ok(())
+    }
+
+    /// Writes an animated picture, 4 bytes a pixel and `rate` frames a second.
+    pub fn add_animation(
+        &mut self,
+        file: impl Into<String>,
+        caption: impl Into<String>,
+        [width, height]: [u32; 2],
+        frames: &[Vec<u8>],
+        rate: u16,
+    ) -> Result<(), CommandError> {
+        let file = file.into();
+        write_animation(self.path.join(&file), width, height, frames.iter().map(Ok), [1, rate])
+            .map_err(CommandError::failure)?;
+        self.section.pictures.push((file, caption.into()));
         Ok(())
     }
 

@@ -9,6 +9,7 @@ mod page;
 mod plate;
 mod plates;
 mod studio;
+mod stylize;
 
 use super::{CommandError, parse, progress};
 use crate::formats::create_folder;
@@ -23,7 +24,7 @@ pub struct Options {
     /// Folder for the pictures and index.html.
     #[arg(long, value_name = "DIR", default_value = "gallery")]
     out: PathBuf,
-    /// Only one system, or one picture of it: a scene or sheet, such as scattering/foliage or scattering/lights.
+    /// Only one system, or one picture of it: a scene or sheet, such as scattering/foliage or stylize/holes.
     #[arg(long, value_name = "SYSTEM[/PICTURE]")]
     only: Option<String>,
     /// Size of the pictures.
@@ -42,10 +43,12 @@ enum Subject {
     Epipole,
     /// A scene for every kind of light.
     Lights,
+    /// What an artist makes of light shafts.
+    Stylize(&'static str),
 }
 
-/// What is shown where nothing is chosen.
-const ALL: [Subject; 10] = [
+/// What is shown of light shafts where nothing is chosen.
+const SCATTERING: [Subject; 10] = [
     Subject::Scene("foliage"),
     Subject::Scene("terrain"),
     Subject::Scene("torus"),
@@ -57,6 +60,11 @@ const ALL: [Subject; 10] = [
     Subject::Methods("torus"),
     Subject::Epipole,
 ];
+
+/// What is shown where nothing is chosen.
+fn all() -> Vec<Subject> {
+    SCATTERING.into_iter().chain(stylize::NAMES.map(Subject::Stylize)).collect()
+}
 
 /// Runs the command.
 pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
@@ -73,6 +81,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
             Subject::Methods(name) => methods::section(&studio, &subject.folder(), name),
             Subject::Epipole => epipole::section(&studio, &subject.folder()),
             Subject::Lights => lights::section(&studio, &subject.folder()),
+            Subject::Stylize(name) => stylize::section(&studio, &subject.folder(), name),
         };
         sections.push(section?);
         bar.inc(1);
@@ -87,47 +96,55 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
 }
 
 impl Subject {
+    /// The system that it belongs to.
+    fn system(self) -> &'static str {
+        if matches!(self, Self::Stylize(_)) { "stylize" } else { "scattering" }
+    }
+
     /// Its name, as in `--only scattering/NAME`; sheets of several scenes share one.
     fn name(self) -> &'static str {
         match self {
-            Self::Scene(name) => name,
+            Self::Scene(name) | Self::Stylize(name) => name,
             Self::Methods(_) => "methods",
             Self::Epipole => "epipole",
             Self::Lights => "lights",
         }
     }
 
+    /// As it is asked for.
+    fn path(self) -> String {
+        format!("{}/{}", self.system(), self.name())
+    }
+
     /// Where its pictures go.
     fn folder(self) -> String {
         match self {
             Self::Methods(scene) => format!("scattering/methods/{scene}"),
-            _ => format!("scattering/{}", self.name()),
+            _ => self.path(),
         }
     }
 }
 
 fn choose(only: Option<&str>) -> Result<Vec<Subject>, CommandError> {
-    let Some(only) = only else { return Ok(ALL.to_vec()) };
-    let (system, picture) =
-        only.split_once('/').map_or((only, None), |(system, picture)| (system, Some(picture)));
+    let mut subjects = all();
+    let Some(only) = only else { return Ok(subjects) };
+    let system: Vec<Subject> = subjects.iter().copied().filter(|subject| subject.system() == only).collect();
+    if !system.is_empty() {
+        return Ok(system);
+    }
     // Scenes that only a sheet shows can be asked for as well.
     let scenes = scenes::SCENES.map(Subject::Scene);
-    let mut subjects = ALL.to_vec();
-    subjects.extend(scenes.iter().filter(|scene| !ALL.contains(scene)));
-    if system == "scattering" {
-        let Some(picture) = picture else { return Ok(ALL.to_vec()) };
-        let path = format!("scattering/{picture}");
-        let named = |subject: &Subject| subject.name() == picture || subject.folder() == path;
-        let found: Vec<Subject> = subjects.iter().copied().filter(named).collect();
-        if !found.is_empty() {
-            return Ok(found);
-        }
+    subjects.extend(scenes.iter().filter(|scene| !SCATTERING.contains(scene)));
+    let named = |subject: &Subject| subject.path() == only || subject.folder() == only;
+    let found: Vec<Subject> = subjects.iter().copied().filter(named).collect();
+    if !found.is_empty() {
+        return Ok(found);
     }
-    let mut known: Vec<String> =
-        subjects.iter().map(|subject| format!("scattering/{}", subject.name())).collect();
+    let mut known: Vec<String> = subjects.into_iter().map(Subject::path).collect();
     known.dedup();
     let known = known.join(", ");
-    Err(CommandError::misuse("--only", format!("there is no `{only}`; there is scattering, {known}")))
+    let reason = format!("there is no `{only}`; there is scattering, stylize, {known}");
+    Err(CommandError::misuse("--only", reason))
 }
 
 #[cfg(test)]
@@ -137,21 +154,26 @@ mod tests {
 
     #[test]
     fn everything_on_the_page_can_be_chosen_alone() {
-        assert_eq!(choose(None).unwrap(), ALL);
-        assert_eq!(choose(Some("scattering")).unwrap(), ALL);
-        for subject in ALL {
-            assert!(choose(Some(&format!("scattering/{}", subject.name()))).unwrap().contains(&subject));
+        assert_eq!(choose(None).unwrap(), all());
+        let stylize = choose(Some("stylize")).unwrap();
+        assert_eq!(choose(Some("scattering")).unwrap(), SCATTERING);
+        assert_eq!(stylize.len(), stylize::NAMES.len());
+        assert_eq!([&SCATTERING[..], &stylize].concat(), all());
+        for subject in all() {
+            assert!(choose(Some(&subject.path())).unwrap().contains(&subject));
             assert_eq!(choose(Some(&subject.folder())).unwrap(), [subject]);
         }
         assert_eq!(choose(Some("scattering/methods")).unwrap().len(), 4);
         assert_eq!(choose(Some("scattering/spot")).unwrap(), [Subject::Scene("spot")]);
+        assert_eq!(choose(Some("stylize/halo")).unwrap(), [Subject::Stylize("halo")]);
+        assert_eq!(choose(Some("scattering/halo")).unwrap(), [Subject::Scene("halo")]);
     }
 
     #[test]
     fn what_is_not_there_is_refused_with_what_is() {
-        for wrong in ["ambient", "scattering/nothing", "foliage", ""] {
+        for wrong in ["ambient", "scattering/nothing", "stylize/lights", "foliage", ""] {
             let error = choose(Some(wrong)).unwrap_err().to_string();
-            assert!(error.contains("scattering/lights"), "{error}");
+            assert!(error.contains("scattering/lights") && error.contains("stylize/halo"), "{error}");
             assert_eq!(error.matches("scattering/methods").count(), 1, "{error}");
         }
     }

@@ -29,7 +29,8 @@ pub struct Studio {
     pub size: [u32; 2],
     /// Folder of the gallery.
     pub out: PathBuf,
-    raster: Raster,
+    /// Draws scenes.
+    pub raster: Raster,
     tonemap: Tonemap,
     composite: Composite,
 }
@@ -73,18 +74,23 @@ impl Studio {
 
     /// The light that a stage scatters, prefiltered in the way that fits its light and its camera.
     pub fn shoot(&self, stage: &Stage) -> Result<Shot, CommandError> {
+        if stage.camera.projection == 0 {
+            return self.epipolar(stage, self.settings_of(stage));
+        }
+        let light = LightForm::of(&stage.light, &stage.inputs());
+        self.projective(stage, Settings { light, ..self.settings() })
+    }
+
+    /// The settings that fit the light of a stage and its camera, which is a perspective one.
+    pub fn settings_of(&self, stage: &Stage) -> Settings {
         let light = LightForm::of(&stage.light, &stage.inputs());
         let epipole_march =
             stage.light.kind != DIRECTIONAL || epipole_near_picture(&stage.camera, stage.light.direction);
         // Around a local light blockers are often closer to it in angle than the series resolves.
         let depth_warp = light.local();
-        let settings = Settings { light, epipole_march, depth_warp, ..self.settings() };
-        if stage.camera.projection == 0 {
-            let visibility = Visibility::automatic(settings.map[0]);
-            self.epipolar(stage, Settings { visibility, ..settings })
-        } else {
-            self.projective(stage, settings)
-        }
+        let settings = self.settings();
+        let visibility = Visibility::automatic(settings.map[0]);
+        Settings { light, epipole_march, depth_warp, visibility, ..settings }
     }
 
     fn epipolar(&self, stage: &Stage, settings: Settings) -> Result<Shot, CommandError> {
