@@ -114,7 +114,7 @@ pub fn transfer(studio: &Studio, folder: &str) -> Result<Section, CommandError> 
     let mut album =
         Album::new(&studio.out, folder, "One function, three scenes".to_owned(), about.to_owned())?;
     for name in SCENES {
-        let easel = Easel::new(studio, name, 2048)?;
+        let easel = Easel::new(studio, name, 4096)?;
         let shadows = easel.shadows(&Change::default())?;
         let inputs = shadows.inputs(&easel.stage.inputs());
         let scattered = easel.scatter(&inputs)?;
