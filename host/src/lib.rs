@@ -29,4 +29,4 @@ pub use gpu::{Gpu, GpuError};
 pub use pass::{Bound, Pass, PassError, RenderStages, Resource};
 pub use resource::{Buffer, Sampler, Texture};
 pub use shaders::Shaders;
-pub use stage::{Lighting, Setting, Stage, StageError};
+pub use stage::{Lighting, PartShadows, Setting, Stage, StageError};

@@ -180,6 +180,11 @@ impl Texture {
         Self::create(gpu, size, format, usage, wgpu::TextureViewDimension::D3)
     }
 
+    /// One layer, to be bound where a pass takes a single texture. Read back it is still the whole array.
+    pub(crate) fn of_layer(&self, layer: u32) -> Self {
+        Self { raw: self.raw.clone(), view: self.layer(layer), dimension: wgpu::TextureViewDimension::D2 }
+    }
+
     /// A view of one layer, to draw into.
     pub fn layer(&self, layer: u32) -> wgpu::TextureView {
         self.raw.create_view(&wgpu::TextureViewDescriptor {

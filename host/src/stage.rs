@@ -2,8 +2,8 @@
 //! A lit scene on the GPU, with everything that a system of light shafts is given by an engine.
 
 use crate::core::{
-    Camera, CameraError, Cascades, Drawing, Light, LightError, MeshBuffers, Pictures, Raster, ShadowViews,
-    Sky, View,
+    Camera, CameraError, Cascades, Drawing, Light, LightError, MeshBuffers, POINT, Pictures, Raster,
+    ShadowViews, Sky, View,
 };
 use crate::data::{Bounds, LightImage, Mesh};
 use crate::gpu::{Gpu, GpuError};
@@ -143,6 +143,14 @@ pub struct Setting<'a> {
     pub samples: u32,
 }
 
+/// Shadow maps of a part of a scene.
+pub struct PartShadows {
+    /// Depth from a directional light or a spot; one empty texel for a point light.
+    pub shadow_map: Texture,
+    /// Depth in the views of the light, where it has several.
+    pub shadow_maps: Option<Texture>,
+}
+
 /// A scene on the GPU: uniforms, shadow maps, picture and depth.
 pub struct Stage {
     /// The camera.
@@ -233,6 +241,28 @@ impl Stage {
             light_texture,
             pictures,
         })
+    }
+
+    /// The shadow maps of a part of the scene alone, drawn like those of the whole.
+    ///
+    /// # Errors
+    /// [`StageError`].
+    pub fn shadows_of(&self, gpu: &Gpu, raster: &Raster, mesh: &Mesh) -> Result<PartShadows, StageError> {
+        let meshes = [MeshBuffers::new(gpu, mesh)];
+        let [width, height, _] = self.pictures.shadow_map.size();
+        let format = wgpu::TextureFormat::Depth32Float;
+        let shadow_map = Texture::target(gpu, [width, height], format);
+        let maps = self.pictures.shadow_maps.as_ref();
+        let shadow_maps = maps.map(|maps| Texture::target_array(gpu, maps.size(), format));
+        let mut encoder = gpu.encoder();
+        if self.light.kind != POINT {
+            raster.record_shadow_map(gpu, &mut encoder, &self.light_buffer, &meshes, &shadow_map)?;
+        }
+        if let (Some(views), Some(maps)) = (&self.shadow_views, &shadow_maps) {
+            raster.record_shadow_maps(gpu, &mut encoder, views, maps.size()[2], &meshes, maps)?;
+        }
+        gpu.submit(encoder)?;
+        Ok(PartShadows { shadow_map, shadow_maps })
     }
 
     /// What the passes are given.

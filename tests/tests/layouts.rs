@@ -3,7 +3,9 @@
 //! through encase, and its bytes are looked for at the offset that reflection reports.
 #![allow(clippy::unwrap_used)]
 
-use airlight::core::{Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, TonemapParameters};
+use airlight::core::{
+    Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters, TonemapParameters,
+};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
@@ -215,6 +217,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         reserved_a: f32, reserved_b: f32,
     });
     twin!(twins: SplatTarget { size: Vec2, count: u32, reserved: u32 });
+    twin!(twins: SortParameters { count: u32, shift: u32, reserved_a: u32, reserved_b: u32 });
     twin!(twins: HoleParameters {
         cells: Vec2, threshold: f32, persistence: f32, octaves: u32, seed: u32, travel: u32, travel_part: f32,
         displacement: f32, turn: f32, far_depth: f32, reserved: f32,

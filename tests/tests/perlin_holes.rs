@@ -14,6 +14,7 @@ use airlight::Texture;
 use airlight::core::DepthRange;
 use airlight::stylize::{
     HoleError, HoleMask, HoleMotion, HoleParameters, HolePattern, HolePicture, Holes, PunchHoles,
+    StylizeError,
 };
 use airlight_tests::reference::stylize::holes::Pattern;
 use gpu::{Random, gpu, shaders, texture, turn};
@@ -324,23 +325,29 @@ fn what_cannot_be_is_refused() {
     let _turn = turn();
     let parameters = pattern(&Holes { size: 9.0, ..Holes::default() }, SIDE).at(0.0).unwrap();
     let bad = HoleParameters { octaves: 0, ..parameters };
-    assert!(matches!(PunchHoles::new(gpu(), shaders(), &bad, [8, 8]), Err(HoleError::Octaves(0))));
+    assert!(matches!(
+        PunchHoles::new(gpu(), shaders(), &bad, [8, 8]),
+        Err(StylizeError::Holes(HoleError::Octaves(0)))
+    ));
     let bad = HoleParameters { threshold: f32::NAN, ..parameters };
     let made = HoleMask::new(gpu(), shaders(), HolePicture::Mask, &bad, [8, 8]);
-    assert!(matches!(made, Err(HoleError::Value { name: "threshold", .. })));
+    assert!(matches!(made, Err(StylizeError::Holes(HoleError::Value { name: "threshold", .. }))));
     for size in [[0, 8], [8, 0], [1 << 20, 8]] {
-        assert!(matches!(PunchHoles::new(gpu(), shaders(), &parameters, size), Err(HoleError::Size { .. })));
+        assert!(matches!(
+            PunchHoles::new(gpu(), shaders(), &parameters, size),
+            Err(StylizeError::Size { .. })
+        ));
     }
     let pass = PunchHoles::new(gpu(), shaders(), &parameters, [8, 8]).unwrap();
-    assert!(matches!(pass.set(gpu(), &bad), Err(HoleError::Value { .. })));
+    assert!(matches!(pass.set(gpu(), &bad), Err(StylizeError::Holes(HoleError::Value { .. }))));
     let map = |size: [u32; 2]| {
         texture(size, wgpu::TextureFormat::R32Float, &vec![1.0; (size[0] * size[1]) as usize])
     };
     let (right, wrong) = (map([8, 8]), map([8, 9]));
-    assert!(matches!(pass.bind(gpu(), &wrong, None), Err(HoleError::OtherSize { given: [8, 9], .. })));
+    assert!(matches!(pass.bind(gpu(), &wrong, None), Err(StylizeError::OtherSize { given: [8, 9], .. })));
     assert!(matches!(
         pass.bind(gpu(), &right, Some(&wrong)),
-        Err(HoleError::OtherSize { given: [8, 9], .. })
+        Err(StylizeError::OtherSize { given: [8, 9], .. })
     ));
     assert!(pass.bind(gpu(), &right, Some(&right)).is_ok());
 }

@@ -10,8 +10,8 @@ use airlight::Texture;
 use airlight::core::DepthRange;
 use airlight::scattering::{Inputs, Prefiltered, Settings, Visibility, Weighting};
 use airlight::stylize::{
-    Element, EpipolarMorphology, EpipolarSettings, Epipole, Form, HolePattern, Holes, Morphology,
-    MorphologySettings, Operator, PunchHoles, Width, shadow_map_extent,
+    Element, Form, HoleParameters, HolePattern, Holes, Operator, ShadowMaps, ShadowOperator, ShadowStyle,
+    StylizedShadows, Width, shadow_map_extent,
 };
 use gpu::{gpu, shaders};
 
@@ -52,41 +52,34 @@ fn light_in_the_air_follows_the_shadow_map() {
     let drawn = stage.inputs().shadow_map;
     let plain = visibility(drawn);
 
-    let depth = DepthRange::Forward;
-    let closed = |width: u32| {
-        let element = Element::Box;
-        let width = Width::new(width).unwrap();
-        let settings = MorphologySettings { operator: Operator::Closing, element, width, depth };
-        let closing = Morphology::new(gpu(), shaders(), settings, MAP).unwrap();
-        let bound = closing.bind(gpu(), drawn).unwrap();
+    let styled = |holes: &[HoleParameters], operators: &[ShadowOperator]| {
+        let style = ShadowStyle { holes, operators };
+        let matrices = StylizedShadows::matrices(&stage.light, None);
+        let (over, maps) = ((&stage.camera, &matrices[..]), ShadowMaps::of(&stage.inputs()));
+        let shadows = StylizedShadows::new(gpu(), shaders(), &style, over, maps, None).unwrap();
         let mut encoder = gpu().encoder();
-        closing.record(&mut encoder, &bound);
+        shadows.record(&mut encoder);
         gpu().submit(encoder).unwrap();
-        visibility(&closing.morphed)
+        visibility(shadows.inputs(&stage.inputs()).shadow_map)
     };
+    let closed = |width| {
+        let (operator, element) = (Operator::Closing, Element::Box);
+        styled(&[], &[ShadowOperator::Across { operator, element, width: Width::new(width).unwrap() }])
+    };
+    assert!(styled(&[], &[]) == plain, "no operator changes nothing");
     assert!(closed(1) == plain, "a closing of one texel changes nothing");
     let small = closed(5);
     let large = closed(21);
     let [first, second] = [darker(&plain, &small), darker(&small, &large)];
 
-    let epipole = Epipole::new(&stage.light, &stage.camera, MAP).unwrap();
     let width = Width::new(31).unwrap();
-    let settings = EpipolarSettings { operator: Operator::Dilation, form: Form::Direct, width, depth };
-    let extrusion = EpipolarMorphology::new(gpu(), shaders(), settings, &epipole, MAP).unwrap();
-    let bound = extrusion.bind(gpu(), drawn).unwrap();
-    let mut encoder = gpu().encoder();
-    extrusion.record(&mut encoder, &bound);
-    gpu().submit(encoder).unwrap();
-    let third = darker(&plain, &visibility(&extrusion.morphed));
+    let extrusion = ShadowOperator::Along { operator: Operator::Dilation, form: Form::Direct, width };
+    let third = darker(&plain, &styled(&[], &[extrusion]));
 
     let holes = Holes { size: 0.4, density: 0.3, octaves: 2, ..Holes::default() };
-    let pattern = HolePattern::new(&holes, shadow_map_extent(&stage.light).unwrap(), depth).unwrap();
-    let punching = PunchHoles::new(gpu(), shaders(), &pattern.at(0.0).unwrap(), MAP).unwrap();
-    let bound = punching.bind(gpu(), drawn, None).unwrap();
-    let mut encoder = gpu().encoder();
-    punching.record(&mut encoder, &bound);
-    gpu().submit(encoder).unwrap();
-    let fourth = darker(&visibility(&punching.punched), &plain);
+    let extent = shadow_map_extent(&stage.light.clip_from_world, 0.0);
+    let pattern = HolePattern::new(&holes, extent, DepthRange::Forward).unwrap();
+    let fourth = darker(&styled(&[pattern.at(0.0).unwrap()], &[]), &plain);
 
     println!(
         "darker: closing {first:.3}, wider {second:.3}, extrusion {third:.3}; than with holes {fourth:.3}"

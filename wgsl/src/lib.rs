@@ -93,6 +93,7 @@ modules! {
     core::phase [],
     core::picture [],
     core::prefix_sum [],
+    core::sort [],
     core::jitter ["core::finite"],
     core::noise ["core::finite"],
     core::ray_depth ["core::camera"],
@@ -154,7 +155,7 @@ modules! {
 
 passes! {
     core/raster,
-    core/scan,
+    core/scan, core/sort,
     core/tonemap,
     core/resolve_depth,
     transmittance/voxels,

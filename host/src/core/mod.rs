@@ -8,6 +8,7 @@ mod raster;
 mod resolve_depth;
 mod scan;
 mod shadow_views;
+mod sort;
 mod tonemap;
 
 pub use camera::{Camera, CameraError, DepthRange, OrthographicView, PerspectiveView, View};
@@ -18,4 +19,5 @@ pub(crate) use raster::{MESH_VERTEX, begin};
 pub use resolve_depth::{ResolveDepth, ResolveDepthParameters, SampleChoice};
 pub use scan::Scan;
 pub use shadow_views::{Cascades, MAX_VIEWS, ShadowViews};
+pub use sort::{Sort, SortParameters};
 pub use tonemap::{Tonemap, TonemapParameters};

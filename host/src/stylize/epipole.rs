@@ -30,14 +30,17 @@ impl Epipole {
         if light.kind == POINT {
             return Err(StylizeError::PointLight);
         }
-        let eye = if camera.projection == 0 {
-            camera.eye.as_dvec3().extend(1.0)
-        } else {
-            let from_clip = camera.world_from_clip.as_dmat4();
-            let forward = f64::from(camera.far_depth - camera.near_depth) * from_clip.z_axis;
-            -forward.truncate().normalize_or_zero().extend(0.0)
-        };
-        Self::in_map(light.clip_from_world.as_dmat4(), eye, size)
+        Self::in_map(light.clip_from_world.as_dmat4(), Self::eye(camera), size)
+    }
+
+    /// The eye of a camera as a homogeneous point of the world: where view rays meet.
+    pub fn eye(camera: &Camera) -> DVec4 {
+        if camera.projection == 0 {
+            return camera.eye.as_dvec3().extend(1.0);
+        }
+        let from_clip = camera.world_from_clip.as_dmat4();
+        let forward = f64::from(camera.far_depth - camera.near_depth) * from_clip.z_axis;
+        -forward.truncate().normalize_or_zero().extend(0.0)
     }
 
     /// Where a homogeneous point of the world (weight 0: a direction TOWARDS the eye) is in the shadow map of `size` texels

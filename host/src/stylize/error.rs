@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What is impossible in stylization.
 
+use super::HoleError;
 use crate::gpu::Gpu;
 use crate::pass::PassError;
 use glam::DVec4;
@@ -34,12 +35,27 @@ pub enum StylizeError {
         /// Width and height of what was announced.
         expected: [u32; 2],
     },
+    /// Not one matrix, and one set of holes, for each shadow map.
+    #[error(
+        "{expected} shadow maps were given {matrices} matrices and {holes} sets of holes: one each is wanted"
+    )]
+    Maps {
+        /// Matrices given.
+        matrices: usize,
+        /// Sets of holes given, if any.
+        holes: usize,
+        /// Maps.
+        expected: usize,
+    },
     /// The eye has no place in the map.
     #[error("the eye at {0} has no place in the shadow map: its coordinates must be finite and not all zero")]
     Epipole(DVec4),
     /// The light has six maps.
     #[error("a point light has a shadow map for each face: give the matrix of one face to `Epipole::in_map`")]
     PointLight,
+    /// Holes.
+    #[error(transparent)]
+    Holes(#[from] HoleError),
     /// A pass failed.
     #[error(transparent)]
     Pass(#[from] PassError),

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Random holes: from what an artist asks for to the parameters of the noise.
 
+use super::HoleError;
 use super::hole_statistics::Distribution;
-use crate::core::{DIRECTIONAL, DepthRange, Light};
-use crate::pass::PassError;
+use crate::core::DepthRange;
 use encase::ShaderType;
-use glam::{DVec2, Vec2};
+use glam::{DVec2, Mat4, Vec2};
 
 /// Octaves at most.
 const MOST_OCTAVES: u32 = 8;
@@ -15,75 +15,6 @@ const MOST_CELLS: f64 = 65536.0;
 const LEAST_SHARE: f64 = 0.002;
 /// A displacement of the noise by more cells than this tears holes to pieces.
 const MOST_DISPLACEMENT: f64 = 1.0;
-
-/// Why holes cannot be made as asked.
-#[derive(Debug, thiserror::Error)]
-pub enum HoleError {
-    /// A number out of its range, or not finite.
-    #[error("holes of {name} {value} are impossible: it must be {range}")]
-    Value {
-        /// Which.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it may be.
-        range: &'static str,
-    },
-    /// Number of octaves.
-    #[error("{0} octaves are impossible: the number must be from 1 to 8")]
-    Octaves(u32),
-    /// Holes smaller than any texel.
-    #[error(
-        "holes of {size} m are too small in a map of {extent} m: their noise has {cells:.0} cells across, and may \
-         have 65536; make them larger, or take fewer octaves"
-    )]
-    TooSmall {
-        /// Mean chord, metres.
-        size: f32,
-        /// The longer side of the map, metres.
-        extent: f32,
-        /// Cells of the finest octave.
-        cells: f64,
-    },
-    /// Holes that are torn by their motion.
-    #[error("holes of {size} m cannot move by {distance} m: with these octaves they may by {most:.3} m")]
-    TooFar {
-        /// Mean chord, metres.
-        size: f32,
-        /// The distance asked for, metres.
-        distance: f32,
-        /// The distance possible, metres.
-        most: f64,
-    },
-    /// A shadow map without a width in metres.
-    #[error(
-        "a light at a point has no shadow map of a width in metres: give the extent at the object's distance"
-    )]
-    LocalLight,
-    /// Size of a map.
-    #[error(
-        "a shadow map of {width}x{height} is impossible: both must lie between 1 and {limit} on this device"
-    )]
-    Size {
-        /// Width.
-        width: u32,
-        /// Height.
-        height: u32,
-        /// The device's limit.
-        limit: u32,
-    },
-    /// Another map than the pass was built for.
-    #[error("a shadow map of {given:?} texels was bound to a pass for {expected:?}: build it for that size")]
-    OtherSize {
-        /// Width and height of what was bound.
-        given: [u32; 2],
-        /// Width and height of what was announced.
-        expected: [u32; 2],
-    },
-    /// A pass failed.
-    #[error(transparent)]
-    Pass(#[from] PassError),
-}
 
 /// The uniform `HoleParameters` of `stylize/perlin_holes`.
 #[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
@@ -224,16 +155,14 @@ impl Holes {
     }
 }
 
-/// Width and height in metres of the shadow map of a directional light.
-///
-/// # Errors
-/// [`HoleError::LocalLight`] for spots and point lights, whose maps widen with the distance.
-pub fn shadow_map_extent(light: &Light) -> Result<[f32; 2], HoleError> {
-    if light.kind != DIRECTIONAL {
-        return Err(HoleError::LocalLight);
-    }
-    let rows = light.clip_from_world.transpose();
-    Ok([2.0 / rows.x_axis.truncate().length(), 2.0 / rows.y_axis.truncate().length()])
+/// Width and height in metres of a shadow map with the matrix `clip_from_world`; that of a light at a point widens with the
+/// distance from it, and is meant at `distance` metres. A directional light's is the same at all distances.
+pub fn shadow_map_extent(clip_from_world: &Mat4, distance: f32) -> [f32; 2] {
+    let rows = clip_from_world.transpose();
+    // The row of w is that of a unit vector along the axis for a light at a point, else (0, 0, 0, 1).
+    let along = rows.w_axis.truncate().length();
+    let w = if along > 0.0 { along * distance } else { rows.w_axis.w };
+    [2.0 * w / rows.x_axis.truncate().length(), 2.0 * w / rows.y_axis.truncate().length()]
 }
 
 /// Holes as the noise that makes them, for any time.
@@ -340,6 +269,8 @@ fn furthest(size: f64, chord: f64, turn: f32) -> f64 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::core::Light;
+    use glam::Vec3;
 
     fn pattern(holes: &Holes) -> Result<HolePattern, HoleError> {
         HolePattern::new(holes, [10.0, 5.0], DepthRange::Forward)
@@ -432,13 +363,15 @@ mod tests {
 
     #[test]
     fn the_extent_of_a_map_is_that_of_its_light() {
-        let [min, max] = [glam::Vec3::new(-3.0, 0.0, -2.0), glam::Vec3::new(3.0, 1.0, 2.0)];
-        let light = Light::directional(glam::Vec3::Y, glam::Vec3::ONE, min, max).unwrap();
-        let mut extent = shadow_map_extent(&light).unwrap();
+        let [min, max] = [Vec3::new(-3.0, 0.0, -2.0), Vec3::new(3.0, 1.0, 2.0)];
+        let light = Light::directional(Vec3::Y, Vec3::ONE, min, max).unwrap();
+        let mut extent = shadow_map_extent(&light.clip_from_world, 7.0);
         extent.sort_by(f32::total_cmp);
         // A little room is left around the scene.
         assert!((4.0..4.4).contains(&extent[0]) && (6.0..6.4).contains(&extent[1]), "{extent:?}");
-        let spot = Light { kind: crate::core::SPOT, ..light };
-        assert!(matches!(shadow_map_extent(&spot), Err(HoleError::LocalLight)));
+        // The map of a spot of 45 degrees to each side is as wide as twice the distance.
+        let spot = Light::spot(Vec3::ONE, Vec3::ZERO, 45.0, 40.0, Vec3::ONE, 0.1, 0.1, 50.0).unwrap();
+        let [width, height] = shadow_map_extent(&spot.clip_from_world, 7.0);
+        assert!((14.0..14.6).contains(&width) && (width - height).abs() < 1e-4, "{width} {height}");
     }
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The passes `stylize/punch_holes` and `stylize/hole_mask`.
 
-use super::{HoleError, HoleParameters};
-use crate::gpu::{Gpu, GpuError};
-use crate::pass::{Bound, Pass, PassError};
+use super::error::check_size;
+use super::{HoleParameters, StylizeError};
+use crate::gpu::Gpu;
+use crate::pass::{Bound, Pass};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use wgpu::TextureFormat::R32Float;
@@ -28,15 +29,15 @@ impl PunchHoles {
     /// for the next.
     ///
     /// # Errors
-    /// [`HoleError`].
+    /// [`StylizeError`].
     pub fn new(
         gpu: &Gpu,
         shaders: &Shaders,
         parameters: &HoleParameters,
         size: [u32; 2],
-    ) -> Result<Self, HoleError> {
+    ) -> Result<Self, StylizeError> {
         parameters.validate()?;
-        check_size(gpu, size)?;
+        check_size(gpu, "a shadow map", size)?;
         Ok(Self {
             alone: Pass::compute(gpu, shaders, "stylize/punch_holes", "default")?,
             with_rest: Pass::compute(gpu, shaders, "stylize/punch_holes", "rest")?,
@@ -48,8 +49,8 @@ impl PunchHoles {
     /// Takes other parameters, as those of another time.
     ///
     /// # Errors
-    /// [`HoleError`].
-    pub fn set(&self, gpu: &Gpu, parameters: &HoleParameters) -> Result<(), HoleError> {
+    /// [`StylizeError`].
+    pub fn set(&self, gpu: &Gpu, parameters: &HoleParameters) -> Result<(), StylizeError> {
         write(gpu, &self.parameters, parameters)
     }
 
@@ -57,19 +58,19 @@ impl PunchHoles {
     /// r32float.
     ///
     /// # Errors
-    /// [`HoleError`].
+    /// [`StylizeError`].
     pub fn bind(
         &self,
         gpu: &Gpu,
         object: &Texture,
         rest: Option<&Texture>,
-    ) -> Result<PunchHolesBound, HoleError> {
+    ) -> Result<PunchHolesBound, StylizeError> {
         let [width, height, _] = self.punched.size();
         for map in [Some(object), rest].into_iter().flatten() {
             let [given_width, given_height, _] = map.size();
             if [given_width, given_height] != [width, height] {
                 let given = [given_width, given_height];
-                return Err(HoleError::OtherSize { given, expected: [width, height] });
+                return Err(StylizeError::OtherSize { given, expected: [width, height] });
             }
         }
         let mut resources = vec![
@@ -113,16 +114,16 @@ impl HoleMask {
     /// Builds the pass for a mask of `size` texels.
     ///
     /// # Errors
-    /// [`HoleError`].
+    /// [`StylizeError`].
     pub fn new(
         gpu: &Gpu,
         shaders: &Shaders,
         picture: HolePicture,
         parameters: &HoleParameters,
         size: [u32; 2],
-    ) -> Result<Self, HoleError> {
+    ) -> Result<Self, StylizeError> {
         parameters.validate()?;
-        check_size(gpu, size)?;
+        check_size(gpu, "a shadow map", size)?;
         let permutation = match picture {
             HolePicture::Mask => "default",
             HolePicture::Noise => "noise",
@@ -137,8 +138,8 @@ impl HoleMask {
     /// Takes other parameters, as those of another time.
     ///
     /// # Errors
-    /// [`HoleError`].
-    pub fn set(&self, gpu: &Gpu, parameters: &HoleParameters) -> Result<(), HoleError> {
+    /// [`StylizeError`].
+    pub fn set(&self, gpu: &Gpu, parameters: &HoleParameters) -> Result<(), StylizeError> {
         write(gpu, &self.parameters, parameters)
     }
 
@@ -149,16 +150,8 @@ impl HoleMask {
     }
 }
 
-fn write(gpu: &Gpu, buffer: &Buffer, parameters: &HoleParameters) -> Result<(), HoleError> {
+fn write(gpu: &Gpu, buffer: &Buffer, parameters: &HoleParameters) -> Result<(), StylizeError> {
     parameters.validate()?;
     buffer.write(gpu, parameters);
-    gpu.check().map_err(|error: GpuError| HoleError::Pass(PassError::Gpu(error)))
-}
-
-fn check_size(gpu: &Gpu, [width, height]: [u32; 2]) -> Result<(), HoleError> {
-    let limit = gpu.limits.max_texture_dimension_2d;
-    if [width, height].iter().any(|side| *side == 0 || *side > limit) {
-        return Err(HoleError::Size { width, height, limit });
-    }
-    Ok(())
+    gpu.check().map_err(|error| StylizeError::Pass(error.into()))
 }

@@ -3,25 +3,29 @@
 //!
 //! [`Morphology`] closes holes of a shadow map with a box or a disc; [`EpipolarMorphology`] extrudes its blockers
 //! along view rays, where the camera cannot see it; [`PunchHoles`] makes random holes in the shadow of an object.
-//! [`Transfer`] functions restyle what a scattering method wrote.
+//! [`StylizedShadows`] does all of that to every map of a light. [`Transfer`] functions restyle what a scattering method wrote.
 
 mod epipolar;
 mod epipole;
 mod error;
+mod hole_error;
 mod hole_statistics;
 mod holes;
 mod holes_passes;
 mod kernel;
 mod morphology;
+mod shadows;
 mod transfer;
 
 pub use epipolar::{EpipolarBound, EpipolarKernel, EpipolarMorphology, EpipolarSettings, Form};
 pub use epipole::Epipole;
 pub use error::StylizeError;
-pub use holes::{HoleError, HoleMotion, HoleParameters, HolePattern, Holes, shadow_map_extent};
+pub use hole_error::HoleError;
+pub use holes::{HoleMotion, HoleParameters, HolePattern, Holes, shadow_map_extent};
 pub use holes_passes::{HoleMask, HolePicture, PunchHoles, PunchHolesBound};
 pub use kernel::{Element, Operator, Width};
 pub use morphology::{Disc, Morphology, MorphologyBound, MorphologySettings, Window};
+pub use shadows::{ShadowMaps, ShadowOperator, ShadowStyle, StylizedShadows};
 pub use transfer::{
     Baker, Blend, Color, Constraint, DiffusionLevel, Keyed, Layer, Mode, Phase, PickScene, Place,
     RayProperty, Restyle, Source, Transfer, TransferError, TransferFunction, TransferImage, TransferLayer,
