@@ -76,7 +76,8 @@ fn bases_integrals_and_means_are_those_of_the_cosines() {
     let found = probe.run(&records);
     let rows = || records.chunks_exact(2).map(|r| (f(r[0]), f(r[1]))).zip(found.chunks_exact(64));
     for j in 0..4 * GROUPS {
-        let budget = 1e-6 + 2e-7 * j as f64;
+        // The angle is rounded once, then multiplied: j pi half a unit in the last place of 1, and the root of two.
+        let budget = 1e-6 + 3e-7 * j as f64;
         hold(&format!("b_{j}"), worst(rows().map(|((x, _), v)| (f(v[j]), basis(j, x)))), budget);
         let integrals = rows().map(|((x, _), v)| (f(v[16 + j]), integral(|t| basis(j, t), 0.0, x)));
         hold(&format!("B_{j}"), worst(integrals), 1e-6);

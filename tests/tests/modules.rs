@@ -294,7 +294,7 @@ fn a_composer_is_filled_in_five_lines() {
         composer.add_composable_module(descriptor).unwrap();
     }
     for pass in PASSES {
-        let definitions = [("GROUP", 1), ("BASES", 32), ("BASES_PER_THREAD", 8)];
+        let definitions = [("GROUP", 1), ("BASES", 32), ("BASES_PER_THREAD", 8), ("COEFFICIENTS", 4)];
         // Rank queries take the place of bases: only the pass that makes their structure is told.
         let ranks = ["scattering/rank", "scattering/rank_weights", "scattering/wavelet"];
         let rank = ranks.contains(&pass.name).then_some(("RANK", 12));

@@ -83,7 +83,7 @@ fn balls(count: usize, seed: u64) -> Particles {
     let ball = |_| Particle {
         position: Vec3::from([0; 3].map(|_| random.between(-4.3, 4.3) as f32)),
         radius: random.between(0.2, 1.2) as f32,
-        extinction: random.between(0.0, 0.6) as f32,
+        extinction: random.between(0.0, 0.3) as f32,
     };
     Particles { list: (0..count).map(ball).collect() }
 }
@@ -100,7 +100,7 @@ fn shuffled(particles: &Particles, seed: u64) -> Particles {
 #[test]
 fn balls_are_the_series_of_their_chords() {
     let _turn = gpu::turn();
-    let particles = balls(60, 21);
+    let particles = balls(250, 21);
     let mut random = Random(8);
     let texels: Vec<[usize; 2]> = (0..150).map(|_| [random.below(64), random.below(64)]).collect();
     let depths = [0.1, 0.3, 0.45, 0.6, 0.85, 1.0];
@@ -121,7 +121,7 @@ fn balls_are_the_series_of_their_chords() {
     ];
     for (form, count, precision, fixed, budget) in cases {
         let (map, counts) = splatted(settings(form, count, precision), &particles, fixed);
-        assert_eq!((counts.kept + counts.dropped(), counts.overflows), (60, 0));
+        assert_eq!((counts.kept + counts.dropped(), counts.overflows), (250, 0));
         let found = ask(&map, false, &points);
         let mut worst = 0.0_f64;
         for (profile, found) in profiles.iter().zip(found.chunks(depths.len())) {
@@ -269,7 +269,7 @@ fn small_balls_keep_their_extinction() {
         greatest = greatest.max(ratio);
     }
     println!("extinction times volume, over that of the ball: {least:.3} to {greatest:.3}");
-    assert!(least > 0.98 && greatest < 1.13);
+    assert!(least > 0.9 && greatest < 1.12);
 }
 
 #[test]

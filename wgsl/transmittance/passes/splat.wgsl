@@ -5,7 +5,7 @@
 // note: rgba32float with the feature float32-blendable. Six vertices an instance, an instance a particle.
 // note: The order of particles changes a coefficient by no more than half a unit in the last place of the target for each of
 // note: them, at the greatest partial sum. The pass splat_fixed does not depend on the order at all.
-// definition COEFFICIENTS: numbers a texel, four a target: 4, 8 or 16; 4 where it is not given.
+// definition COEFFICIENTS: numbers a texel, four a target: 4, 8 or 16.
 // definition PERIODIC: the series of the full period instead of cosines: a Fourier opacity map.
 // binding light: the directional light of the map.
 // binding splat: size of the map, number of particles.
@@ -27,7 +27,6 @@ struct Corner {
     @location(1) @interpolate(flat) along: vec4<f32>,
 }
 
-#ifdef COEFFICIENTS
 #if COEFFICIENTS == 4
 struct Layers {
     @location(0) first: vec4<f32>,
@@ -43,11 +42,6 @@ struct Layers {
     @location(1) second: vec4<f32>,
     @location(2) third: vec4<f32>,
     @location(3) fourth: vec4<f32>,
-}
-#endif
-#else
-struct Layers {
-    @location(0) first: vec4<f32>,
 }
 #endif
 
@@ -78,13 +72,11 @@ fn fragment_particle(corner: Corner) -> Layers {
     let own = contribution(stretch.middle, stretch.half);
     var layers: Layers;
     layers.first = stretch.optical_depth * own.layers[0];
-#ifdef COEFFICIENTS
 #if COEFFICIENTS != 4
     layers.second = stretch.optical_depth * own.layers[1];
 #if COEFFICIENTS != 8
     layers.third = stretch.optical_depth * own.layers[2];
     layers.fourth = stretch.optical_depth * own.layers[3];
-#endif
 #endif
 #endif
     return layers;

@@ -13,13 +13,13 @@ fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
         let pivot = (column..n).max_by(larger).unwrap_or(column);
         matrix.swap(column, pivot);
         right.swap(column, pivot);
-        for row in 0..n {
+        let above = matrix[column].clone();
+        let known = right[column];
+        for (row, (entries, value)) in matrix.iter_mut().zip(&mut right).enumerate() {
             if row != column {
-                let factor = matrix[row][column] / matrix[column][column];
-                for k in column..n {
-                    matrix[row][k] -= factor * matrix[column][k];
-                }
-                right[row] -= factor * right[column];
+                let factor = entries[column] / above[column];
+                entries.iter_mut().zip(&above).for_each(|(entry, from)| *entry -= factor * from);
+                *value -= factor * known;
             }
         }
     }
