@@ -178,9 +178,24 @@ impl Pass {
             dst_factor: wgpu::BlendFactor::One,
             operation: wgpu::BlendOperation::Add,
         };
+        let blend = wgpu::BlendState { color: component, alpha: component };
+        Self::blended(gpu, composed, stages, blend, count)
+    }
+
+    /// Like [`Pass::render`] into `count` targets of the format of `stages`, blended with what is there.
+    ///
+    /// # Errors
+    /// As [`Pass::render`].
+    pub fn blended(
+        gpu: &Gpu,
+        composed: &Composed,
+        stages: &RenderStages<'_>,
+        blend: wgpu::BlendState,
+        count: usize,
+    ) -> Result<Self, PassError> {
         let target = stages.target.map(|format| wgpu::ColorTargetState {
             format,
-            blend: Some(wgpu::BlendState { color: component, alpha: component }),
+            blend: Some(blend),
             write_mask: wgpu::ColorWrites::ALL,
         });
         Self::render_to(gpu, composed, stages, &vec![target; count])

@@ -11,7 +11,7 @@ use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
     TransferShare, Window,
 };
-use airlight::transmittance::{SplatTarget, VolumeSpace};
+use airlight::transmittance::{MediumLighting, SplatTarget, VolumeSpace};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -216,6 +216,9 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: VolumeSpace {
         unit_from_world: Mat4, world_from_unit: Mat4, extinction_scale: f32, step_length: f32,
         reserved_a: f32, reserved_b: f32,
+    });
+    twin!(twins: MediumLighting {
+        albedo: Vec3, g: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32, reserved_c: f32,
     });
     twin!(twins: SplatTarget { size: Vec2, count: u32, reserved: u32 });
     twin!(twins: HoleParameters {

@@ -108,8 +108,10 @@ modules! {
         "core::cosine_basis", "core::prefix_sum", "transmittance::map_texels", "transmittance::opacity_map"
     ],
     transmittance::transmittance_moments ["core::fourier_basis", "core::moment_bounds"],
-    transmittance::volume [],
+    transmittance::volume ["core::finite"],
     transmittance::particles ["core::finite", "core::light", "transmittance::light_space"],
+    transmittance::medium ["core::phase", "core::prefix_sum"],
+    transmittance::seen_particles ["core::camera", "transmittance::particles"],
     transmittance::map_form [
         "core::cosine_basis", "transmittance::extinction_map", "transmittance::opacity_map",
         "transmittance::transmittance_moments"
@@ -179,6 +181,10 @@ passes! {
     transmittance/splat,
     transmittance/splat_fixed,
     transmittance/query,
+    transmittance/march_volume,
+    transmittance/light_particles,
+    transmittance/render_particles,
+    transmittance/composite,
     scattering/slices,
     scattering/rectify,
     scattering/rectify_projective,

@@ -62,6 +62,19 @@ pub enum TransmittanceError {
         /// The device's limit.
         limit: u64,
     },
+    /// How a medium scatters.
+    #[error("{name} of {value} is impossible: it must be {range}")]
+    Lighting {
+        /// Which number.
+        name: &'static str,
+        /// What was given.
+        value: f32,
+        /// What is possible.
+        range: &'static str,
+    },
+    /// A map was given to the reference, or a light alone to a pass for maps.
+    #[error("the reference {0}")]
+    Reference(&'static str),
     /// A pass failed.
     #[error(transparent)]
     Pass(#[from] PassError),

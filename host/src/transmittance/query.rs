@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Transmittance at points.
 
-use super::{Form, MapSettings, TransmittanceError, TransmittanceMap};
+use super::{MapSettings, TransmittanceError, TransmittanceMap};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass};
 use crate::resource::Buffer;
@@ -46,10 +46,7 @@ impl Query {
         monotone: bool,
     ) -> Result<Self, TransmittanceError> {
         settings.check(gpu)?;
-        let mut definitions = settings.reading_definitions();
-        if monotone && matches!(settings.form, Form::Extinction | Form::Bounded) {
-            definitions = definitions.flag("MONOTONE");
-        }
+        let definitions = settings.lighting_definitions(monotone);
         let pass = Pass::compute_with(gpu, shaders, "transmittance/query", &definitions)?;
         Ok(Self { pass, settings })
     }

@@ -127,6 +127,13 @@ impl MapSettings {
         definitions
     }
 
+    /// The same with the Fejér window, where the form has one.
+    pub(super) fn lighting_definitions(&self, monotone: bool) -> Definitions {
+        let definitions = self.reading_definitions();
+        let windowed = monotone && matches!(self.form, Form::Extinction | Form::Bounded);
+        if windowed { definitions.flag("MONOTONE") } else { definitions }
+    }
+
     /// Definitions of the passes that build it.
     pub(super) fn building_definitions(&self) -> Definitions {
         let definitions = self.reading_definitions();

@@ -71,6 +71,16 @@ impl VolumeTexture {
         };
         Ok(Self { texture, space: Buffer::uniform(gpu, &space), reading })
     }
+
+    pub(super) fn check(&self, reading: Reading) -> Result<(), TransmittanceError> {
+        if reading == Reading::Linear && self.reading == Reading::Nearest {
+            return Err(crate::gpu::GpuError::Refused(
+                "r32float does not filter: upload the volume for `Reading::Linear`".to_owned(),
+            )
+            .into());
+        }
+        Ok(())
+    }
 }
 
 /// Builds maps of volumes by a march along each light ray.
@@ -112,12 +122,7 @@ impl Voxels {
         volume: &VolumeTexture,
     ) -> Result<Bound, TransmittanceError> {
         map.check(self.settings)?;
-        if self.reading == Reading::Linear && volume.reading == Reading::Nearest {
-            return Err(crate::gpu::GpuError::Refused(
-                "r32float does not filter: upload the volume for `Reading::Linear`".to_owned(),
-            )
-            .into());
-        }
+        volume.check(self.reading)?;
         let mut resources = map.resources();
         resources.extend([
             ("volume", (&volume.space).into()),

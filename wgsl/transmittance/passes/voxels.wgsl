@@ -19,11 +19,12 @@
 // binding coefficients: out, the layers of the map.
 // binding intervals: out, least and greatest occupied depth, 0..1; 1 and 0 where there is none. With BOUNDED only.
 
-#import airlight::core::finite::finite_or
 #import airlight::core::light::Light
 #import airlight::transmittance::light_space::{map_point, map_range}
 #import airlight::transmittance::map_form::{contribution, LAYERS}
-#import airlight::transmittance::volume::{VolumeSpace, segment_in_box, march_steps, voxel_at}
+#import airlight::transmittance::volume::{
+    VolumeSpace, segment_in_box, march_steps, voxel_at, extinction_of_value
+}
 #ifdef BOUNDED
 #import airlight::transmittance::bounded_map::{depth_in_interval, length_in_interval}
 #endif
@@ -49,9 +50,6 @@ const GREATEST: f32 = 1e30;
 @group(#{GROUP}) @binding(5) var intervals: texture_storage_2d<rg32float, write>;
 #endif
 
-/// More than any extinction may be, 1/m.
-const GREATEST_EXTINCTION: f32 = 1e6;
-
 /// Extinction at a place in unit space, 1/m.
 fn extinction_at(unit: vec3<f32>) -> f32 {
 #ifdef LINEAR
@@ -59,7 +57,7 @@ fn extinction_at(unit: vec3<f32>) -> f32 {
 #else
     let value = textureLoad(extinction, voxel_at(unit, textureDimensions(extinction)), 0).x;
 #endif
-    return clamp(finite_or(value * volume.extinction_scale, 0.0), 0.0, GREATEST_EXTINCTION);
+    return extinction_of_value(value, volume);
 }
 
 @compute @workgroup_size(16, 8)

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: Light at each particle through a transmittance map, and keys that sort particles back to front.
+// source: Gautron et al., "Extinction transmittance maps" (2011), Eq. 3.
+// note: Before `render_particles`: this pass, then `core/sort` of `keys` and `order`, 32 bits.
+// note: A particle is lit as its middle is, the near half of its own extinction included. What a map does not take is dropped:
+// note: it comes last, with the transmittance -1. Particles of the same depth keep their order.
+// definition COEFFICIENTS: numbers a texel, four a layer: 4, 8 or 16, of the moments 8; 4 where it is not given.
+// definition FUNCTION: transmittance function map; without this and the next four an extinction map of cosines.
+// definition PERIODIC: the series of the full period instead of cosines: a Fourier opacity map, or with FUNCTION.
+// definition POWER: six power moments.
+// definition TRIGONOMETRIC: two trigonometric moments.
+// definition BOUNDED: an extinction map over the occupied interval of each texel.
+// definition MONOTONE: with the Fejer window, extinction maps only.
+// definition NEAREST: the nearest texel instead of a bilinear read.
+// binding coefficients: the layers of the map, rgba32float or rgba16float.
+// binding intervals: least and greatest occupied depth, 0..1, rg32float; with BOUNDED only.
+// binding camera: the camera, perspective or orthographic.
+// binding light: the directional light of the map.
+// binding splat: size of the map, number of particles.
+// binding particles: the particles.
+// binding keys: out, ascending from the farthest to the nearest.
+// binding order: out, the number of each particle.
+// binding transmittances: out, from the light to each, 0..1; -1 for what is dropped.
+
+#import airlight::core::camera::Camera
+#import airlight::core::light::Light
+#import airlight::core::sort::ascending_key
+#import airlight::transmittance::particles::{
+    Particle, SplatTarget, ball_in_map, particle_defect, PARTICLE_KEPT
+}
+#import airlight::transmittance::seen_particles::view_depth
+#import airlight::transmittance::transmittance_map::transmittance
+
+@group(#{GROUP}) @binding(2) var<uniform> camera: Camera;
+@group(#{GROUP}) @binding(3) var<uniform> light: Light;
+@group(#{GROUP}) @binding(4) var<uniform> splat: SplatTarget;
+@group(#{GROUP}) @binding(5) var<storage, read> particles: array<Particle>;
+@group(#{GROUP}) @binding(6) var<storage, read_write> keys: array<u32>;
+@group(#{GROUP}) @binding(7) var<storage, read_write> order: array<u32>;
+@group(#{GROUP}) @binding(8) var<storage, read_write> transmittances: array<f32>;
+
+/// Of what is dropped.
+const LAST_KEY: u32 = 0xffffffffu;
+
+@compute @workgroup_size(64)
+fn light_particles(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let index = id.x + id.y * groups.x * 64u;
+    let room = min(arrayLength(&keys), min(arrayLength(&order), arrayLength(&transmittances)));
+    if index >= min(splat.count, min(arrayLength(&particles), room)) {
+        return;
+    }
+    let particle = particles[index];
+    let ball = ball_in_map(particle, light, splat.size);
+    let kept = particle_defect(particle, ball, splat.size) == PARTICLE_KEPT;
+    keys[index] = select(LAST_KEY, ascending_key(-view_depth(camera, particle.position)), kept);
+    order[index] = index;
+    let middle = select(vec2<f32>(0.0), ball.middle, kept);
+    transmittances[index] = select(-1.0, transmittance(middle, select(0.0, ball.depth, kept)), kept);
+}
