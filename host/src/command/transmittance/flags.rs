@@ -114,7 +114,7 @@ pub struct Options {
     #[arg(long, value_enum)]
     pub reading: Option<ReadingSpelling>,
     /// From values of a file of a volume to extinction in 1/m; of all else a factor on its extinction [default: 1; of files
-    /// optical depth 16 at the greatest value along the longest side].
+    /// optical depth 32 at the greatest value along the longest side].
     #[arg(long, value_name = "S", value_parser = parse::number, allow_hyphen_values = true)]
     pub extinction_scale: Option<f32>,
     /// Value that is empty in a file of a volume: what exceeds it is extinction [default: 0].

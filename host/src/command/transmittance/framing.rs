@@ -11,7 +11,7 @@ use crate::transmittance::MediumLighting;
 use glam::Vec3;
 
 /// Share of the picture that the box of the medium fills at most.
-const FILLED: f32 = 0.92;
+const FILLED: f32 = 0.98;
 /// From the medium to the eye.
 const FROM: Vec3 = Vec3::new(-0.4, 0.1, 1.0);
 

@@ -10,7 +10,7 @@ use crate::transmittance::ParticleCounts;
 use glam::Vec3;
 
 /// Optical depth along the longest side of a file of a volume, were all of it as dense as its densest voxel.
-const OPTICAL_DEPTH: f32 = 16.0;
+const OPTICAL_DEPTH: f32 = 32.0;
 /// Metres of the longest side of a .npy volume.
 const LONGEST: f32 = 4.0;
 /// Share of the greatest extinction below which nothing is to be framed.
@@ -253,7 +253,11 @@ mod tests {
         let Ok(Medium { matter: Matter::Volume(clean, scale), bounds, framed, report }) = medium else {
             panic!("no volume");
         };
-        assert!((scale - 1.6).abs() < 1e-5 && clean.values[555] == 1.0 && clean.values[..2] == [0.0, 0.0]);
+        assert!(
+            (scale - 32.0 / 3000.0).abs() < 1e-6
+                && clean.values[555] == 1.0
+                && clean.values[..2] == [0.0, 0.0]
+        );
         assert_eq!((bounds.min, bounds.max), (Vec3::new(1.5, 4.5, 4.5), Vec3::splat(6.5)));
         assert_eq!((framed.min, framed.max), (Vec3::splat(4.5), Vec3::splat(6.5)));
         assert!(report[1].contains("1 not finite, 1 negative"), "{report:?}");

@@ -18,11 +18,11 @@ use crate::{Buffer, Gpu, Shaders, Texture};
 use glam::Vec3;
 
 /// A clear afternoon.
-const ZENITH: Vec3 = Vec3::new(0.05, 0.13, 0.36);
+const ZENITH: Vec3 = Vec3::new(0.025, 0.075, 0.25);
 /// Its haze.
-const HORIZON: Vec3 = Vec3::new(0.34, 0.44, 0.56);
+const HORIZON: Vec3 = Vec3::new(0.18, 0.26, 0.38);
 /// What lies below, in haze too.
-const GROUND: Vec3 = Vec3::new(0.2, 0.25, 0.31);
+const GROUND: Vec3 = Vec3::new(0.1, 0.14, 0.19);
 
 /// What was drawn.
 pub struct Drawn {

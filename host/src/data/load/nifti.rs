@@ -30,9 +30,9 @@ const READ: [NiftiType; 10] = [
     NiftiType::Float64,
 ];
 
-/// From right, front, up in millimetres, as the format has it, to right, up, back in metres.
+/// From right, front, up in millimetres, as the format has it, to left, up, front in metres: a patient faces +z.
 fn world_from_patient(millimetres: f64) -> DMat4 {
-    let (x, y, z) = (DVec4::X, DVec4::NEG_Z, DVec4::Y);
+    let (x, y, z) = (DVec4::NEG_X, DVec4::Z, DVec4::Y);
     DMat4::from_cols(x, y, z, DVec4::W) * DMat4::from_scale(DVec3::splat(1e-3 * millimetres))
 }
 

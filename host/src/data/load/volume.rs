@@ -14,7 +14,7 @@ use std::path::Path;
 /// Loads a volume from a NIfTI-1 file (.nii, .nii.gz) or a .npy array of three axes: z, y, x with x fastest, y up.
 ///
 /// Values come as they are in the file, times its slope; they may be negative or NaN, which maps read as 0. A NIfTI volume lies
-/// in the world as the file says, in metres, its upward axis y; an array is centred on the origin, its voxels cubes of a side of
+/// in the world as the file says, in metres, its upward axis y and its front z; an array is centred on the origin, its voxels cubes of a side of
 /// `voxel` metres.
 ///
 /// # Errors

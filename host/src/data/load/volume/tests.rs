@@ -56,10 +56,10 @@ fn values_and_places_of_nifti_volumes() {
     for big in [false, true] {
         let plain = load("a.nii", &nifti(big, &[])).unwrap();
         assert_eq!((plain.size, &plain.values), ([2, 3, 4], &counted));
-        // Right, front, up in millimetres becomes right, up, back in metres.
+        // Right, front, up in millimetres becomes left, up, front in metres.
         let [min, max] = places(&plain);
-        assert!(min.distance(Vec3::new(-0.005, -0.015, 0.01)) < 1e-6, "{min}");
-        assert!(max.distance(Vec3::new(0.015, 0.105, -0.05)) < 1e-6, "{max}");
+        assert!(min.distance(Vec3::new(0.005, -0.015, -0.01)) < 1e-6, "{min}");
+        assert!(max.distance(Vec3::new(-0.015, 0.105, 0.05)) < 1e-6, "{max}");
         assert!(plain.world_from_unit.determinant() > 0.0);
     }
     let scaled = load("a.NII", &nifti(true, &[(112, &2_f32.to_le_bytes()), (116, &1_f32.to_le_bytes())]));
@@ -71,8 +71,8 @@ fn values_and_places_of_nifti_volumes() {
     let half = 0.5_f32.sqrt().to_le_bytes();
     let turned = nifti(false, &[(252, &1_i16.to_le_bytes()), (264, &half), (268, &1000_f32.to_le_bytes())]);
     let turned = load("a.nii", &turned).unwrap().world_from_unit;
-    assert!(turned.x_axis.truncate().distance(Vec3::new(0.0, 0.0, -0.02)) < 1e-6, "{turned}");
-    assert!((turned.w_axis.x - 1.01).abs() < 1e-6, "{turned}");
+    assert!(turned.x_axis.truncate().distance(Vec3::new(0.0, 0.0, 0.02)) < 1e-6, "{turned}");
+    assert!((turned.w_axis.x + 1.01).abs() < 1e-6, "{turned}");
     // The matrix goes before the quaternion.
     let mut rows = vec![(254, 2_i16.to_le_bytes().to_vec()), (252, 1_i16.to_le_bytes().to_vec())];
     for (at, value) in [(280, -5_f32), (300, 6.0), (320, 7.0), (324, 9.0)] {
@@ -80,8 +80,8 @@ fn values_and_places_of_nifti_volumes() {
     }
     let rows: Vec<(usize, &[u8])> = rows.iter().map(|(at, bytes)| (*at, bytes.as_slice())).collect();
     let mirrored = load("a.nii", &nifti(false, &rows)).unwrap().world_from_unit;
-    assert!(mirrored.x_axis.truncate().distance(Vec3::new(-0.01, 0.0, 0.0)) < 1e-6, "{mirrored}");
-    assert!(mirrored.y_axis.truncate().distance(Vec3::new(0.0, 0.0, -0.018)) < 1e-6, "{mirrored}");
+    assert!(mirrored.x_axis.truncate().distance(Vec3::new(0.01, 0.0, 0.0)) < 1e-6, "{mirrored}");
+    assert!(mirrored.y_axis.truncate().distance(Vec3::new(0.0, 0.0, 0.018)) < 1e-6, "{mirrored}");
     assert!((mirrored.w_axis.y - 0.0055).abs() < 1e-6, "{mirrored}");
 }
 
