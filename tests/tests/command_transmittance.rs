@@ -94,12 +94,12 @@ fn every_map_of_a_volume_is_near_the_reference() {
         ("bounded", 2, 0.02),
         ("bounded --coefficients 4", 1, 0.06),
         ("bounded --coefficients 16", 4, 0.02),
-        ("etm --coefficients 16", 4, 0.1),
-        ("fom --coefficients 16", 4, 0.2),
-        ("tfm --coefficients 16", 4, 0.1),
-        ("tfm-fourier --coefficients 16", 4, 0.3),
-        ("moments", 2, 0.3),
-        ("trigonometric", 2, 0.4),
+        ("etm --coefficients 16", 4, 0.03),
+        ("fom --coefficients 16", 4, 0.03),
+        ("tfm --coefficients 16", 4, 0.04),
+        ("tfm-fourier --coefficients 16", 4, 0.06),
+        ("moments", 2, 0.2),
+        ("trigonometric", 2, 0.25),
     ] {
         let found = run(map);
         let shape = if layers == 1 { vec![64, 64, 4] } else { vec![layers, 64, 64, 4] };
@@ -130,7 +130,7 @@ fn every_map_of_particles_is_near_the_best() {
         ("etm --coefficients 16 --splat fixed", 0.1),
         ("fom --coefficients 16 --splat blend", 0.15),
         ("moments", 0.35),
-        ("trigonometric", 0.5),
+        ("trigonometric", 0.4),
     ] {
         let found = run(map);
         assert_eq!(found.through(), best.through(), "{map}");
