@@ -8,7 +8,6 @@
 #[path = "support/command.rs"]
 mod command;
 #[path = "support/npy.rs"]
-#[allow(dead_code)]
 mod npy;
 
 use airlight_tests::error::{max_absolute, mean_absolute, relative_rmse};

@@ -5,7 +5,6 @@
 #[path = "support/command.rs"]
 mod command;
 #[path = "support/npy.rs"]
-#[allow(dead_code)]
 mod npy;
 
 use command::{airlight_with, folder, refuses, words};
