@@ -5,6 +5,7 @@ use crate::core::{CameraError, LightError};
 use crate::scattering::ScatteringError;
 use crate::scenes::SceneError;
 use crate::stylize::StylizeError;
+use crate::transmittance::TransmittanceError;
 use crate::{GpuError, PassError, StageError};
 use std::fmt::Display;
 use std::path::Path;
@@ -128,6 +129,25 @@ impl From<StylizeError> for CommandError {
             StylizeError::Epipole(_) => Self::misuse("--close-epipolar, --extrude", error),
             _ => Self::failure(error),
         }
+    }
+}
+
+impl From<TransmittanceError> for CommandError {
+    fn from(error: TransmittanceError) -> Self {
+        use TransmittanceError as E;
+        let flag = match &error {
+            E::Coefficients { .. } => "--coefficients",
+            E::HalfMoments(_) | E::Blend(_) => "--format",
+            E::Size { what: "a transmittance map", .. } | E::Sums { .. } => "--map-size",
+            E::Splat(..) => "--map",
+            E::Lighting { name: "albedo", .. } => "--albedo",
+            E::Lighting { name: "g", .. } => "--g",
+            E::Size { .. } => return Self::failure(format!("--volume: {error}")),
+            E::Lighting { .. } | E::Range(_) | E::OtherMap { .. } | E::Reference(_) | E::Pass(_) => {
+                return Self::failure(error);
+            }
+        };
+        Self::misuse(flag, error)
     }
 }
 

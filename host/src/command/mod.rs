@@ -12,6 +12,7 @@ mod run;
 mod scattering;
 mod stylize;
 mod text;
+mod transmittance;
 
 pub use bench::baselines;
 pub use error::CommandError;
@@ -41,6 +42,8 @@ enum Command {
         "Number of the frame, for key frames, the time of holes and --jitter [default: 0]"
     )))]
     Stylize(Box<stylize::Options>),
+    /// A volume or particles of yours, lit through a transmittance map.
+    Transmittance(Box<transmittance::Options>),
     /// Any compute or full-screen pass on arrays of yours, by binding name.
     Run(run::Options),
     /// Ratios against baselines, interleaved, with the error of both sides.
@@ -59,6 +62,7 @@ pub fn main() -> ExitCode {
         Command::Gallery(options) => gallery::run(&options, quiet),
         Command::Scattering(options) => scattering::run(&options, quiet),
         Command::Stylize(options) => stylize::run(&options, quiet),
+        Command::Transmittance(options) => transmittance::run(&options, quiet),
         Command::Run(options) => run::run(&options),
         Command::Bench(options) => bench::run(&options, quiet),
         Command::List(options) => list::list(&options),

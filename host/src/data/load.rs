@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Meshes from OBJ and glTF files.
+//! Meshes from OBJ and glTF files, and media from NIfTI and .npy files.
 //!
-//! Both loaders take triangles, normals and a base colour, and nothing else: no textures, no animation.
+//! Both loaders of meshes take triangles, normals and a base colour, and nothing else: no textures, no animation.
 
 mod gltf;
+mod medium;
+mod nifti;
 mod obj;
+mod particles;
 #[cfg(test)]
 mod tests;
+mod volume;
+
+pub use medium::MediumFileError;
+pub use particles::{PARTICLE_COLUMNS, load_particles};
+pub use volume::load_volume;
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};

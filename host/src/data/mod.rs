@@ -23,7 +23,9 @@ pub(crate) use light_image::linear_from_srgb;
 pub use light_image::load_light_image;
 pub use light_image::{LightImage, LightImageError};
 #[cfg(feature = "command")]
-pub use load::{MeshError, load_mesh, mesh_from_bytes};
+pub use load::{
+    MediumFileError, MeshError, PARTICLE_COLUMNS, load_mesh, load_particles, load_volume, mesh_from_bytes,
+};
 pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};
 pub use particles::{Particle, Particles, burst};
 pub use random::Random;

@@ -23,6 +23,11 @@ impl Buffers {
         Ok(())
     }
 
+    /// Takes an array.
+    pub fn array(&mut self, name: &str, array: Array) {
+        self.arrays.push((name.to_owned(), array));
+    }
+
     /// Reads what lies between inputs and radiance of a view. `prefix`: of the names.
     fn view(&mut self, gpu: &Gpu, prefix: &str, view: &ViewShafts) -> Result<(), CommandError> {
         let named = |name: &str| format!("{prefix}{name}");
