@@ -35,26 +35,29 @@ fn a_cloud() -> (Volume, Setting) {
     (volume, setting)
 }
 
-/// A cloud of an optical depth of 3 under light from above: what the map's range holds is mostly cloud.
+/// A cloud under light from above, where most of the map's range is cloud, of an optical depth of 3 and of 10.
 #[test]
 fn a_cloud_through_maps_is_the_march_in_f64() {
     let _turn = gpu::turn();
-    let mut volume = cloud([40, 24, 32], 9);
-    volume.values.iter_mut().for_each(|value| *value *= 0.3);
-    let view = perspective(Vec3::new(4.0, 2.0, 8.0), DepthRange::Forward);
-    let setting = Setting::new(&view, Vec3::Y, bounds(&volume), lighting());
-    let (radiance, through) = split(&setting.marched(&volume, true));
-    assert!(through.iter().filter(|t| **t < 0.2).count() > 200, "the cloud is thin");
-    let maps = [(Form::Extinction, 4, 0.03), (Form::Extinction, 16, 0.015), (Form::Bounded, 4, 0.015)];
-    let (brute, seen) = split(&setting.volume(&volume, Reading::Linear, None));
-    hold("the shader's reference", relative_rmse(&brute, &radiance), 0.005);
-    hold("transmittance to the background", relative_rmse(&seen, &through), 0.002);
-    for (form, count, budget) in maps {
-        let settings = MapSettings::new(form, count, [128, 128]);
-        let (found, seen) = split(&setting.volume(&volume, Reading::Linear, Some(settings)));
-        hold(&format!("{form:?} {count}"), relative_rmse(&found, &radiance), budget);
-        hold("the same against the shader's reference", relative_rmse(&found, &brute), budget);
+    let thin = [(Form::Extinction, 4, 0.03), (Form::Extinction, 16, 0.015), (Form::Bounded, 4, 0.015)];
+    let dense = [(Form::Extinction, 16, 0.015), (Form::Bounded, 8, 0.015)];
+    for (density, maps) in [(0.3, &thin[..]), (1.0, &dense[..])] {
+        let mut volume = cloud([40, 24, 32], 9);
+        volume.values.iter_mut().for_each(|value| *value *= density);
+        let view = perspective(Vec3::new(4.0, 2.0, 8.0), DepthRange::Forward);
+        let setting = Setting::new(&view, Vec3::Y, bounds(&volume), lighting());
+        let (radiance, through) = split(&setting.marched(&volume, true));
+        assert!(through.iter().filter(|t| **t < 0.4).count() > 200, "there is no cloud");
+        let (brute, seen) = split(&setting.volume(&volume, Reading::Linear, None));
+        hold("the shader's reference", relative_rmse(&brute, &radiance), 0.01);
         hold("transmittance to the background", relative_rmse(&seen, &through), 0.002);
+        for (form, count, budget) in maps {
+            let settings = MapSettings::new(*form, *count, [128, 128]);
+            let (found, seen) = split(&setting.volume(&volume, Reading::Linear, Some(settings)));
+            hold(&format!("{density}, {form:?} {count}"), relative_rmse(&found, &radiance), *budget);
+            hold("the same against the shader's reference", relative_rmse(&found, &brute), *budget);
+            hold("transmittance to the background", relative_rmse(&seen, &through), 0.002);
+        }
     }
 }
 
@@ -106,7 +109,7 @@ fn surfaces_cut_the_medium_before_any_camera() {
         hold("radiance", relative_rmse(&radiance, &expected), 0.015);
         hold("transmittance", relative_rmse(&through, &left), 0.01);
         let cut = relative_rmse(&through, &split(&whole).1);
-        assert!(cut > 0.1, "the surface cuts nothing: {cut}");
+        assert!(cut > 0.05, "the surface cuts nothing: {cut}");
         // Steps of a voxel do not meet the faces of voxels.
         let (nearest, _) = split(&setting.volume(&volume, Reading::Nearest, None));
         let (expected, _) = split(&setting.marched(&volume, false));
