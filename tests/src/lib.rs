@@ -8,6 +8,7 @@
 pub mod baselines;
 pub mod error;
 pub mod linear;
+pub mod media;
 pub mod parallel;
 pub mod reference;
 pub mod statistics;

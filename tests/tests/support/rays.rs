@@ -8,15 +8,15 @@ use airlight::data::Volume;
 use airlight::transmittance::{
     MapSettings, Query, Reading, TransmittanceError, TransmittanceMap, VolumeTexture, Voxels,
 };
-use airlight_tests::linear;
+pub use airlight_tests::media::Medium;
 use airlight_tests::reference::transmittance::Profile;
+use airlight_tests::{linear, media};
 use glam::{Mat4, Vec3};
-use std::f64::consts::PI;
 
 /// Half the range of the map, metres, and of its width.
-pub const HALF: f64 = 4.0;
+pub const HALF: f64 = 0.5 * RANGE;
 /// The range of the map, metres.
-pub const RANGE: f64 = 2.0 * HALF;
+pub const RANGE: f64 = media::RANGE;
 
 /// A light that shines along −z: depth 0 is at z = 4 m.
 pub fn light_along_z(far_depth: f64) -> Light {
@@ -92,71 +92,7 @@ pub fn ask(map: &TransmittanceMap, monotone: bool, points: &[Vec3]) -> Vec<f32> 
     bound.read(gpu()).unwrap()
 }
 
-/// Kinds of media along a ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Medium {
-    /// Smooth, and fills the range.
-    Smooth,
-    /// Noisy blobs.
-    Smoke,
-    /// Few stretches with sharp edges.
-    Boxes,
-    /// Boxes within 10 to 40 % of the range.
-    ShortBoxes,
-}
-
 /// Extinction of a ray of `length` steps, of the optical depth `total`.
 pub fn medium(kind: Medium, length: usize, total: f64, random: &mut Random) -> Vec<f32> {
-    let unit = |i: usize| (i as f64 + 0.5) / length as f64;
-    let mut values: Vec<f64> = match kind {
-        Medium::Smooth => {
-            let waves: Vec<[f64; 2]> =
-                (0..3).map(|_| [random.between(-0.25, 0.25), random.between(0.0, 2.0 * PI)]).collect();
-            let value = |x: f64| {
-                let of = |(k, wave): (usize, &[f64; 2])| wave[0] * ((k + 1) as f64 * PI * x + wave[1]).cos();
-                1.0 + waves.iter().enumerate().map(of).sum::<f64>()
-            };
-            (0..length).map(|i| value(unit(i))).collect()
-        }
-        Medium::Smoke => {
-            let blobs: Vec<[f64; 3]> = (0..6)
-                .map(|_| [random.between(0.1, 0.9), random.between(0.02, 0.1), random.between(0.2, 1.0)])
-                .collect();
-            let value = |x: f64| {
-                blobs.iter().map(|[at, width, s]| s * (-((x - at) / width).powi(2)).exp()).sum::<f64>()
-            };
-            (0..length)
-                .map(|i| value(unit(i)) * random.between(0.6, 1.4))
-                .map(|v| if v < 0.02 { 0.0 } else { v })
-                .collect()
-        }
-        Medium::Boxes | Medium::ShortBoxes => {
-            let (low, high) = if kind == Medium::Boxes {
-                (0.0, 1.0)
-            } else {
-                let width = random.between(0.1, 0.4);
-                let low = random.between(0.0, 1.0 - width);
-                (low, low + width)
-            };
-            let mut values = vec![0.0; length];
-            for _ in 0..3 {
-                let from = random.between(low, low + 0.85 * (high - low));
-                let to = (from + random.between(0.05, 0.2) * (high - low)).min(high);
-                let strength = random.between(0.3, 1.0);
-                for (i, value) in values.iter_mut().enumerate() {
-                    if (from..to).contains(&unit(i)) {
-                        *value += strength;
-                    }
-                }
-            }
-            // Never empty.
-            values[((0.5 * (low + high)) * length as f64) as usize] += 0.3;
-            values
-        }
-    };
-    let sum: f64 = values.iter().sum::<f64>() * RANGE / length as f64;
-    for value in &mut values {
-        *value *= total / sum;
-    }
-    values.into_iter().map(|value| value as f32).collect()
+    media::medium(kind, length, total, &mut || random.unit())
 }

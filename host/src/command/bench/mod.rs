@@ -3,11 +3,15 @@
 
 pub mod baselines;
 mod choices;
+mod light_rays;
+mod media_pictures;
 mod resolution;
 mod scattering;
 mod stylize;
 mod tables;
 mod transfer;
+mod transmittance;
+mod transmittance_tables;
 mod visibility;
 
 use super::CommandError;
@@ -68,7 +72,7 @@ struct Report {
     rows: Vec<Row>,
 }
 
-const SYSTEMS: [&str; 2] = ["scattering", "stylize"];
+const SYSTEMS: [&str; 3] = ["scattering", "stylize", "transmittance"];
 
 /// Runs the command.
 pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
@@ -99,6 +103,12 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     }
     if asked("stylize") {
         add(stylize::rows(&gpu, &shaders, quiet)?);
+    }
+    if asked("transmittance") {
+        add(transmittance::rows(&gpu, &shaders, quiet)?);
+        if options.tables {
+            add(transmittance_tables::rows(&gpu, &shaders, quiet)?);
+        }
     }
     if let Some(path) = &options.json {
         let driver = format!("{} {}", gpu.adapter.driver, gpu.adapter.driver_info);
