@@ -14,7 +14,7 @@ use crate::transmittance::{
 use glam::Vec3;
 
 /// How many particles.
-const COUNT: usize = 20_000;
+const COUNT: usize = 40_000;
 /// Columns and rows of all maps.
 const MAP: [u32; 2] = [256, 256];
 /// Maps side by side, and the one that no particle is splatted to.
@@ -30,25 +30,25 @@ const MAPS: [(Form, u32, bool, &str, &str); 6] = [
 /// The section.
 pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let gpu = &studio.gpu;
-    let particles = data::burst(COUNT, 3);
+    let particles = data::burst(COUNT, 12);
     let nothing = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
     let bounds = particles.bounds().unwrap_or(nothing);
     let arrangement = Arrangement {
         view: PerspectiveView {
             eye: Vec3::new(2.0, 1.2, 6.0),
             target: Vec3::ZERO,
-            field_of_view: 40.0,
+            field_of_view: 42.0,
             near: 0.1,
             far: 1000.0,
             depth: DepthRange::Forward,
         },
-        sun: (Vec3::new(-0.7, 0.6, 0.25), Vec3::new(24.0, 18.0, 12.0)),
-        fill: (Vec3::new(0.6, -0.2, 0.6), Vec3::new(0.7, 1.2, 2.2)),
+        sun: (Vec3::new(-0.7, 0.6, 0.25), Vec3::new(12.5, 8.6, 5.2)),
+        fill: (Vec3::new(0.6, -0.2, 0.6), Vec3::new(0.3, 0.55, 1.05)),
         medium: (Vec3::new(0.95, 0.90, 0.84), 0.1),
         sky: Sky {
-            zenith: Vec3::new(0.015, 0.03, 0.07),
-            horizon: Vec3::new(0.07, 0.09, 0.13),
-            glow: Vec3::new(0.10, 0.07, 0.04),
+            zenith: Vec3::new(0.004, 0.009, 0.022),
+            horizon: Vec3::new(0.018, 0.026, 0.045),
+            glow: Vec3::new(0.05, 0.03, 0.015),
             haze: 0.5,
         },
         ground: None,

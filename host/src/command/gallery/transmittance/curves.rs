@@ -21,10 +21,11 @@ const POINTS: usize = 400;
 /// Steps of the exact march between two places.
 const STEPS: usize = 16;
 /// Of the methods, in their order.
-const COLORS: [RGBColor; 6] = [
+const COLORS: [RGBColor; 7] = [
     RGBColor(240, 140, 60),
     RGBColor(245, 205, 90),
     RGBColor(90, 200, 120),
+    RGBColor(70, 190, 190),
     RGBColor(90, 160, 240),
     RGBColor(200, 120, 230),
     RGBColor(235, 95, 110),

@@ -29,10 +29,11 @@ pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, Com
 type Method = (Form, u32, &'static str, &'static str);
 
 /// Maps that are compared everywhere.
-const METHODS: [Method; 6] = [
+const METHODS: [Method; 7] = [
     (Form::Extinction, 4, "etm4", "extinction map, 4 coefficients"),
     (Form::Extinction, 16, "etm16", "extinction map, 16 coefficients"),
     (Form::Bounded, 4, "bounded4", "bounded extinction map, 4 coefficients"),
+    (Form::Bounded, 16, "bounded16", "bounded extinction map, 16 coefficients"),
     (Form::Opacity, 4, "fom4", "Fourier opacity map, 4 coefficients"),
     (Form::Function, 4, "tfm4", "transmittance function map, 4 coefficients"),
     (Form::PowerMoments, 8, "moments", "power moments, 7 numbers"),

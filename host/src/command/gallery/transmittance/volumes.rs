@@ -25,23 +25,23 @@ pub fn plume(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let volume = data::plume([72, 144, 72], 7);
     let arrangement = Arrangement {
         view: PerspectiveView {
-            eye: Vec3::new(0.4, 1.0, 8.0),
-            target: Vec3::new(0.25, 2.3, 0.0),
+            eye: Vec3::new(0.8, 0.7, 7.4),
+            target: Vec3::new(0.8, 2.35, 0.0),
             field_of_view: 40.0,
             near: 0.1,
             far: 1000.0,
             depth: DepthRange::Forward,
         },
-        sun: (Vec3::new(-0.85, 0.42, -0.25), Vec3::new(26.0, 16.5, 9.0)),
-        fill: (Vec3::new(0.5, 0.6, 0.6), Vec3::new(2.0, 2.7, 4.2)),
+        sun: (Vec3::new(-0.85, 0.42, -0.25), Vec3::new(15.0, 8.6, 4.2)),
+        fill: (Vec3::new(0.5, 0.6, 0.6), Vec3::new(0.55, 0.8, 1.35)),
         medium: (Vec3::new(0.94, 0.92, 0.90), 0.35),
         sky: Sky {
-            zenith: Vec3::new(0.10, 0.20, 0.42),
-            horizon: Vec3::new(0.75, 0.50, 0.38),
-            glow: Vec3::new(0.9, 0.45, 0.15),
+            zenith: Vec3::new(0.03, 0.07, 0.18),
+            horizon: Vec3::new(0.42, 0.22, 0.15),
+            glow: Vec3::new(0.75, 0.32, 0.09),
             haze: 0.22,
         },
-        ground: Some(Vec3::new(0.16, 0.13, 0.10)),
+        ground: Some(Vec3::new(0.09, 0.075, 0.06)),
         exposure: 1.0,
     };
     section(studio, folder, "A plume of smoke", &arrangement, &volume, 1.3)
@@ -52,21 +52,21 @@ pub fn cloud(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let volume = data::cloud([120, 60, 100], 9);
     let arrangement = Arrangement {
         view: PerspectiveView {
-            eye: Vec3::new(1.5, -1.2, 8.0),
-            target: Vec3::new(0.0, 0.1, 0.0),
+            eye: Vec3::new(1.5, -1.0, 7.6),
+            target: Vec3::new(0.0, 0.2, 0.0),
             field_of_view: 34.0,
             near: 0.1,
             far: 1000.0,
             depth: DepthRange::Forward,
         },
-        sun: (Vec3::new(-0.55, 0.8, 0.15), Vec3::new(20.0, 18.6, 16.5)),
-        fill: (Vec3::new(0.3, -0.3, 1.0), Vec3::new(2.6, 3.4, 4.8)),
+        sun: (Vec3::new(-0.55, 0.8, 0.15), Vec3::new(10.5, 9.6, 8.3)),
+        fill: (Vec3::new(0.3, -0.3, 1.0), Vec3::new(0.8, 1.15, 1.7)),
         medium: (Vec3::new(0.99, 0.99, 0.99), 0.2),
         sky: Sky {
-            zenith: Vec3::new(0.07, 0.20, 0.50),
-            horizon: Vec3::new(0.55, 0.68, 0.80),
+            zenith: Vec3::new(0.02, 0.07, 0.22),
+            horizon: Vec3::new(0.20, 0.29, 0.40),
             glow: Vec3::new(0.25, 0.22, 0.16),
-            haze: 0.35,
+            haze: 0.22,
         },
         ground: None,
         exposure: 1.0,
