@@ -49,7 +49,7 @@ pub fn plume(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
 
 /// A cloud at noon.
 pub fn cloud(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
-    let volume = data::cloud([120, 60, 100], 9);
+    let volume = data::cloud([90, 45, 75], 9);
     let arrangement = Arrangement {
         view: PerspectiveView {
             eye: Vec3::new(1.5, -1.0, 7.6),
@@ -59,7 +59,7 @@ pub fn cloud(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
             far: 1000.0,
             depth: DepthRange::Forward,
         },
-        sun: (Vec3::new(-0.55, 0.8, 0.15), Vec3::new(10.5, 9.6, 8.3)),
+        sun: (Vec3::new(-0.55, 0.8, 0.15), Vec3::new(13.0, 11.9, 10.3)),
         fill: (Vec3::new(0.3, -0.3, 1.0), Vec3::new(0.8, 1.15, 1.7)),
         medium: (Vec3::new(0.99, 0.99, 0.99), 0.2),
         sky: Sky {
