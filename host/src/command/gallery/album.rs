@@ -2,7 +2,7 @@
 //! The pictures of a section on disk, and the contact sheet of them.
 
 use crate::command::CommandError;
-use crate::formats::{create_folder, write_animation, write_png};
+use crate::formats::{create_folder, write_animation, write_png, write_whole};
 use image::RgbaImage;
 use image::imageops::{FilterType, replace, resize};
 use std::path::{Path, PathBuf};
@@ -79,6 +79,20 @@ impl Album {
             let tile = [TILE, (TILE * height).div_ceil(width).max(1)];
             self.tiles.push(resize(&picture, tile[0], tile[1], FilterType::CatmullRom));
         }
+        Ok(())
+    }
+
+    /// Writes a drawing, the text of an SVG file.
+    pub fn add_drawing(
+        &mut self,
+        file: impl Into<String>,
+        caption: impl Into<String>,
+        drawing: &str,
+    ) -> Result<(), CommandError> {
+        let file = file.into();
+        write_whole(self.path.join(&file), |writer| writer.write_all(drawing.as_bytes()))
+            .map_err(CommandError::failure)?;
+        self.section.pictures.push((file, caption.into()));
         Ok(())
     }
 

@@ -10,6 +10,7 @@ mod plate;
 mod plates;
 mod studio;
 mod stylize;
+mod transmittance;
 
 use super::{CommandError, parse, progress};
 use crate::formats::create_folder;
@@ -45,6 +46,8 @@ enum Subject {
     Lights,
     /// What an artist makes of light shafts.
     Stylize(&'static str),
+    /// Media that shadow themselves.
+    Transmittance(&'static str),
 }
 
 /// What is shown of light shafts where nothing is chosen.
@@ -63,7 +66,9 @@ const SCATTERING: [Subject; 10] = [
 
 /// What is shown where nothing is chosen.
 fn all() -> Vec<Subject> {
-    SCATTERING.into_iter().chain(stylize::NAMES.map(Subject::Stylize)).collect()
+    let scattering = SCATTERING.into_iter();
+    let others = stylize::NAMES.map(Subject::Stylize).into_iter();
+    scattering.chain(others).chain(transmittance::NAMES.map(Subject::Transmittance)).collect()
 }
 
 /// Runs the command.
@@ -82,6 +87,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
             Subject::Epipole => epipole::section(&studio, &subject.folder()),
             Subject::Lights => lights::section(&studio, &subject.folder()),
             Subject::Stylize(name) => stylize::section(&studio, &subject.folder(), name),
+            Subject::Transmittance(name) => transmittance::section(&studio, &subject.folder(), name),
         };
         sections.push(section?);
         bar.inc(1);
@@ -98,13 +104,17 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
 impl Subject {
     /// The system that it belongs to.
     fn system(self) -> &'static str {
-        if matches!(self, Self::Stylize(_)) { "stylize" } else { "scattering" }
+        match self {
+            Self::Stylize(_) => "stylize",
+            Self::Transmittance(_) => "transmittance",
+            _ => "scattering",
+        }
     }
 
     /// Its name, as in `--only scattering/NAME`; sheets of several scenes share one.
     fn name(self) -> &'static str {
         match self {
-            Self::Scene(name) | Self::Stylize(name) => name,
+            Self::Scene(name) | Self::Stylize(name) | Self::Transmittance(name) => name,
             Self::Methods(_) => "methods",
             Self::Epipole => "epipole",
             Self::Lights => "lights",
@@ -143,7 +153,7 @@ fn choose(only: Option<&str>) -> Result<Vec<Subject>, CommandError> {
     let mut known: Vec<String> = subjects.into_iter().map(Subject::path).collect();
     known.dedup();
     let known = known.join(", ");
-    let reason = format!("there is no `{only}`; there is scattering, stylize, {known}");
+    let reason = format!("there is no `{only}`; there is scattering, stylize, transmittance, {known}");
     Err(CommandError::misuse("--only", reason))
 }
 
@@ -158,7 +168,9 @@ mod tests {
         let stylize = choose(Some("stylize")).unwrap();
         assert_eq!(choose(Some("scattering")).unwrap(), SCATTERING);
         assert_eq!(stylize.len(), stylize::NAMES.len());
-        assert_eq!([&SCATTERING[..], &stylize].concat(), all());
+        let transmittance = choose(Some("transmittance")).unwrap();
+        assert_eq!(transmittance.len(), transmittance::NAMES.len());
+        assert_eq!([&SCATTERING[..], &stylize, &transmittance].concat(), all());
         for subject in all() {
             assert!(choose(Some(&subject.path())).unwrap().contains(&subject));
             assert_eq!(choose(Some(&subject.folder())).unwrap(), [subject]);
@@ -166,12 +178,14 @@ mod tests {
         assert_eq!(choose(Some("scattering/methods")).unwrap().len(), 4);
         assert_eq!(choose(Some("scattering/spot")).unwrap(), [Subject::Scene("spot")]);
         assert_eq!(choose(Some("stylize/halo")).unwrap(), [Subject::Stylize("halo")]);
+        assert_eq!(choose(Some("transmittance/plume")).unwrap(), [Subject::Transmittance("plume")]);
         assert_eq!(choose(Some("scattering/halo")).unwrap(), [Subject::Scene("halo")]);
     }
 
     #[test]
     fn what_is_not_there_is_refused_with_what_is() {
-        for wrong in ["ambient", "scattering/nothing", "stylize/lights", "foliage", ""] {
+        for wrong in ["ambient", "scattering/nothing", "stylize/lights", "transmittance/halo", "foliage", ""]
+        {
             let error = choose(Some(wrong)).unwrap_err().to_string();
             assert!(error.contains("scattering/lights") && error.contains("stylize/halo"), "{error}");
             assert_eq!(error.matches("scattering/methods").count(), 1, "{error}");
