@@ -10,7 +10,7 @@ mod volumes;
 use super::album::Section;
 use super::studio::Studio;
 use crate::command::CommandError;
-use crate::transmittance::{Form, TransmittanceError};
+use crate::transmittance::Form;
 
 /// Pictures of this system, as in `--only transmittance/NAME`.
 pub const NAMES: [&str; 4] = ["plume", "cloud", "curves", "burst"];
@@ -38,9 +38,3 @@ const METHODS: [Method; 7] = [
     (Form::Function, 4, "tfm4", "transmittance function map, 4 coefficients"),
     (Form::PowerMoments, 8, "moments", "power moments, 7 numbers"),
 ];
-
-impl From<TransmittanceError> for CommandError {
-    fn from(error: TransmittanceError) -> Self {
-        Self::failure(error)
-    }
-}
