@@ -26,9 +26,16 @@ impl LightRays {
         Self { extinctions }
     }
 
+    /// Texels of the map and columns of the volume. Places in a power of two are exact, and a whole number of marching
+    /// steps fits into a voxel.
+    fn width(&self) -> usize {
+        self.extinctions.len().next_power_of_two()
+    }
+
     fn volume(&self) -> Result<Volume, CommandError> {
-        let (width, length) = (self.extinctions.len(), self.extinctions.first().map_or(0, Vec::len));
-        let value = |i: usize| self.extinctions[i % width][length - 1 - i / width];
+        let (width, length) = (self.width(), self.extinctions.first().map_or(0, Vec::len));
+        let last = self.extinctions.len() - 1;
+        let value = |i: usize| self.extinctions[(i % width).min(last)][length - 1 - i / width];
         let values = (0..width * length).map(value).collect();
         let side = RANGE as f32;
         let space = Mat4::from_translation(Vec3::splat(-0.5 * side)) * Mat4::from_scale(Vec3::splat(side));
@@ -43,13 +50,13 @@ impl LightRays {
         (form, coefficients): (Form, u32),
         places: &[f64],
     ) -> Result<Vec<f32>, CommandError> {
-        let settings = MapSettings::new(form, coefficients, [self.extinctions.len() as u32, 1]);
+        let settings = MapSettings::new(form, coefficients, [self.width() as u32, 1]);
         let map = TransmittanceMap::new(gpu, settings, &light()?).map_err(CommandError::failure)?;
         let volume =
             VolumeTexture::new(gpu, &self.volume()?, 1.0, Reading::Nearest).map_err(CommandError::failure)?;
         let voxels = Voxels::new(gpu, shaders, settings, Reading::Nearest).map_err(CommandError::failure)?;
         let bound = voxels.bind(gpu, &map, &volume).map_err(CommandError::failure)?;
-        let texels = self.extinctions.len() as f64;
+        let texels = self.width() as f64;
         let points: Vec<Vec3> = places
             .iter()
             .flat_map(|place| depths().map(move |depth| (place, depth)))
