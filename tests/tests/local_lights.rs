@@ -18,7 +18,7 @@ use airlight_tests::error;
 use airlight_tests::reference::camera::Camera as ReferenceCamera;
 use airlight_tests::reference::scattering as reference;
 use glam::{Mat4, Vec2, Vec3};
-use gpu::{Random, gpu, shaders};
+use gpu::{Random, gpu, point, shaders, spot};
 use reference::{Cone, LocalLight, LocalRows, LocalScene, Over, ShadowMap, Start, Weights};
 use wgpu::TextureFormat::R32Float;
 
@@ -157,27 +157,6 @@ impl Case {
             height: PICTURE[1] as usize,
         };
         compare(&scene, &maps)
-    }
-}
-
-/// A spot beside the picture that shines through the torus.
-fn spot() -> Lighting {
-    Lighting::Spot {
-        position: Vec3::new(3.5, 4.5, -2.0),
-        target: Vec3::new(0.0, 1.2, 0.2),
-        outer_degrees: 32.0,
-        inner_degrees: 20.0,
-        intensity: Vec3::new(120.0, 100.0, 80.0),
-        radius: 0.05,
-    }
-}
-
-/// A point light inside the ring, in the picture.
-fn point() -> Lighting {
-    Lighting::Point {
-        position: Vec3::new(0.3, 2.2, -1.2),
-        intensity: Vec3::new(60.0, 50.0, 40.0),
-        radius: 0.05,
     }
 }
 

@@ -9,6 +9,8 @@
 mod gpu;
 #[path = "support/probing.rs"]
 mod probing;
+#[path = "support/wild_function.rs"]
+mod wild_function;
 
 use airlight::core::{Camera, Light};
 use airlight::scattering::{Along, Inputs, March, Medium, Weighting};
@@ -26,6 +28,7 @@ use probing::{f, hold, worst};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use wgpu::TextureFormat::{R32Float, Rgba16Float};
+use wild_function::wild_function;
 
 /// Half a step of rgba16float below 1.
 const HALF_FLOAT: f64 = 2.5e-4;
@@ -499,16 +502,7 @@ fn nothing_but_numbers_leaves_the_pass() {
         let map = gpu::texture([4, 4], Rgba16Float, &any(64));
         picture.light.radiance = Vec3::splat([0.0, 3e38, -3e38][round % 3]);
         picture.buffers[1] = Buffer::uniform(gpu(), &picture.light);
-        let function = TransferFunction {
-            across: random.below(4) as u32,
-            down: random.below(4) as u32,
-            mode: round as u32 % 3,
-            phase: round as u32 % 2,
-            depth_limit: [0.0, 3e38, -1.0, 1e-38][round % 4],
-            strength: [1.0, 3e38, 0.5][round % 3],
-            brightness: [3e38, 1.0, -3e38][round / 3 % 3],
-            g: [0.0, 3e38, -3e38, 0.9][round / 2 % 4],
-        };
+        let function = wild_function(&mut random, round);
         let found = restyle(&picture, &function, &map).read(gpu()).unwrap();
         assert!(found.iter().all(|value| value.is_finite()), "{function:?}");
         // The compute form says the same.

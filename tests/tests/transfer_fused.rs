@@ -9,6 +9,8 @@
 mod gpu;
 #[path = "support/probing.rs"]
 mod probing;
+#[path = "support/wild_function.rs"]
+mod wild_function;
 
 use airlight::core::Sky;
 use airlight::data::LightImage;
@@ -21,9 +23,10 @@ use airlight::stylize::{
 };
 use airlight::{Buffer, Lighting, Pass, Sampler, Setting, Stage, Texture};
 use glam::Vec3;
-use gpu::{Random, TestScene, gpu, shaders};
+use gpu::{Random, TestScene, gpu, point, shaders, spot};
 use probing::hold;
 use wgpu::TextureFormat::{R32Float, Rgba16Float};
+use wild_function::wild_function;
 
 const PICTURE: [u32; 2] = [96, 72];
 const MAP: [u32; 2] = [256, 256];
@@ -50,23 +53,6 @@ fn stage(scene: &TestScene, light: Lighting, texture: Option<&LightImage>) -> St
 
 fn sun(scene: &TestScene) -> Lighting {
     Lighting::directional(scene.light, scene.radiance)
-}
-
-fn spot() -> Lighting {
-    Lighting::Spot {
-        position: Vec3::new(3.5, 4.5, -2.0),
-        target: Vec3::new(0.0, 1.2, 0.2),
-        outer_degrees: 32.0,
-        inner_degrees: 20.0,
-        intensity: Vec3::new(120.0, 100.0, 80.0),
-        radius: 0.05,
-    }
-}
-
-/// In the picture.
-fn point() -> Lighting {
-    let (position, intensity) = (Vec3::new(0.3, 2.2, -1.2), Vec3::new(60.0, 50.0, 40.0));
-    Lighting::Point { position, intensity, radius: 0.05 }
 }
 
 /// A function whose colours change by at most 1.5 over its side.
@@ -257,16 +243,7 @@ fn nothing_but_numbers_leaves_the_pass() {
             light.radiance = Vec3::splat([12.0, 3e38, -3e38][round % 3]);
             let light = Buffer::uniform(gpu(), &light);
             let inputs = Inputs { light: &light, ..stage.inputs() };
-            let function = TransferFunction {
-                across: random.below(4) as u32,
-                down: random.below(4) as u32,
-                mode: round as u32 % 3,
-                phase: round as u32 % 2,
-                depth_limit: [0.0, 3e38, -1.0, 1e-38][round % 4],
-                strength: [1.0, 3e38, 0.5][round % 3],
-                brightness: [3e38, 1.0, -3e38][round / 3 % 3],
-                g: [0.0, 3e38, -3e38, 0.9][round / 2 % 4],
-            };
+            let function = wild_function(&mut random, round);
             let bound = method.bind(gpu(), &inputs).unwrap();
             let mut encoder = gpu().encoder();
             method.record_rectification(&mut encoder, &bound);

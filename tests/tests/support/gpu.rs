@@ -513,3 +513,24 @@ pub fn host_light(
         reserved_b: 0.0,
     }
 }
+
+/// A spot beside the picture that shines through the torus.
+pub fn spot() -> Lighting {
+    Lighting::Spot {
+        position: Vec3::new(3.5, 4.5, -2.0),
+        target: Vec3::new(0.0, 1.2, 0.2),
+        outer_degrees: 32.0,
+        inner_degrees: 20.0,
+        intensity: Vec3::new(120.0, 100.0, 80.0),
+        radius: 0.05,
+    }
+}
+
+/// A point light inside the ring, in the picture.
+pub fn point() -> Lighting {
+    Lighting::Point {
+        position: Vec3::new(0.3, 2.2, -1.2),
+        intensity: Vec3::new(60.0, 50.0, 40.0),
+        radius: 0.05,
+    }
+}

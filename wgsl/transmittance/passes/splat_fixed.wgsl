@@ -52,24 +52,28 @@ const BITS_OF_ONE: u32 = 0x3f800000u;
 /// Zeros may be negative.
 const NO_SIGN: u32 = 0x7fffffffu;
 
-/// Texels that a ball covers.
+/// A particle in the map, and the texels that it covers.
 struct Cover {
+    /// The particle.
+    ball: Ball,
     /// First column and row.
     first: vec2<u32>,
     /// How many of both; zeros where the particle is dropped.
     size: vec2<u32>,
 }
 
-fn cover_of(ball: Ball, kept: bool) -> Cover {
+/// What the particle of a workgroup covers; nothing for a workgroup beyond the last particle.
+fn covered(group: vec3<u32>, groups: vec3<u32>) -> Cover {
+    let index = group.x + group.y * groups.x;
+    let count = min(splat.count, arrayLength(&particles));
+    let particle = particles[min(index, arrayLength(&particles) - 1u)];
+    let ball = ball_in_map(particle, light, splat.size);
+    let kept = index < count && particle_defect(particle, ball, splat.size) == PARTICLE_KEPT;
     let last = splat.size - 1.0;
     let begin = clamp(ceil(ball.middle - ball.reach - 0.5), vec2<f32>(0.0), splat.size);
     let end = clamp(floor(ball.middle + ball.reach - 0.5), vec2<f32>(-1.0), last);
     let size = select(vec2<f32>(0.0), max(end - begin + 1.0, vec2<f32>(0.0)), kept);
-    return Cover(vec2<u32>(begin), vec2<u32>(size));
-}
-
-fn index_of(group: vec3<u32>, groups: vec3<u32>) -> u32 {
-    return group.x + group.y * groups.x;
+    return Cover(ball, vec2<u32>(begin), vec2<u32>(size));
 }
 
 #ifdef BOUNDED
@@ -78,16 +82,10 @@ fn occupy(
     @builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) thread: u32
 ) {
-    let index = index_of(group, groups);
-    if index >= min(splat.count, arrayLength(&particles)) {
-        return;
-    }
-    let particle = particles[index];
-    let ball = ball_in_map(particle, light, splat.size);
-    let cover = cover_of(ball, particle_defect(particle, ball, splat.size) == PARTICLE_KEPT);
+    let cover = covered(group, groups);
     for (var i = thread; i < cover.size.x * cover.size.y; i += THREADS) {
         let texel = cover.first + vec2<u32>(i % cover.size.x, i / cover.size.x);
-        let stretch = stretch_of_ball(ball, vec2<f32>(texel) + 0.5);
+        let stretch = stretch_of_ball(cover.ball, vec2<f32>(texel) + 0.5);
         if stretch.optical_depth > 0.0 {
             let at = 2u * (texel.y * u32(splat.size.x) + texel.x);
             let near = clamp(stretch.middle - stretch.half, 0.0, 1.0);
@@ -110,16 +108,10 @@ fn accumulate(
     @builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) thread: u32
 ) {
-    let index = index_of(group, groups);
-    if index >= min(splat.count, arrayLength(&particles)) {
-        return;
-    }
-    let particle = particles[index];
-    let ball = ball_in_map(particle, light, splat.size);
-    let cover = cover_of(ball, particle_defect(particle, ball, splat.size) == PARTICLE_KEPT);
+    let cover = covered(group, groups);
     for (var i = thread; i < cover.size.x * cover.size.y; i += THREADS) {
         let texel = cover.first + vec2<u32>(i % cover.size.x, i / cover.size.x);
-        let stretch = stretch_of_ball(ball, vec2<f32>(texel) + 0.5);
+        let stretch = stretch_of_ball(cover.ball, vec2<f32>(texel) + 0.5);
         if stretch.optical_depth > 0.0 {
 #ifdef BOUNDED
             let interval = interval_of(texel);
