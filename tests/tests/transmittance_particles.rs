@@ -165,6 +165,25 @@ fn fixed_point_does_not_know_the_order() {
 }
 
 #[test]
+fn more_particles_than_a_row_of_workgroups_count_once_each() {
+    let _turn = gpu::turn();
+    let few = balls(5, 12);
+    // Clear balls before them fill the row of 65535 workgroups; the rest of the next row has no particle.
+    let clear = few.list.iter().map(|ball| Particle { extinction: 0.0, ..*ball });
+    let list: Vec<_> = clear.cycle().take(65_534).chain(few.list.iter().copied()).collect();
+    for form in [Form::Extinction, Form::Bounded] {
+        let of = |particles: &Particles| {
+            let (map, counts) = splatted(settings(form, 4, Precision::Single), particles, true);
+            assert_eq!((counts.kept as usize, counts.overflows), (particles.list.len(), 0));
+            map.coefficients.read_words(gpu()).unwrap()
+        };
+        let alone = of(&few);
+        assert!(alone.iter().any(|word| *word != 0));
+        assert!(of(&Particles { list: list.clone() }) == alone, "{form:?}");
+    }
+}
+
+#[test]
 fn blending_changes_by_half_a_unit_a_particle_at_most() {
     let _turn = gpu::turn();
     let particles = balls(150, 31);
