@@ -5,13 +5,14 @@
 
 use airlight::core::{
     Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters, TonemapParameters,
+    VolumeSpace,
 };
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
     TransferShare, Window,
 };
-use airlight::transmittance::{MediumLighting, SplatTarget, VolumeSpace};
+use airlight::transmittance::{MediumLighting, SplatTarget};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -214,7 +215,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     });
     twin!(twins: SortParameters { count: u32, shift: u32, reserved_a: u32, reserved_b: u32 });
     twin!(twins: VolumeSpace {
-        unit_from_world: Mat4, world_from_unit: Mat4, extinction_scale: f32, step_length: f32,
+        unit_from_world: Mat4, world_from_unit: Mat4, value_scale: f32, step_length: f32,
         reserved_a: f32, reserved_b: f32,
     });
     twin!(twins: MediumLighting {

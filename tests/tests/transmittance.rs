@@ -12,11 +12,9 @@ mod probing;
 #[path = "support/rays.rs"]
 mod rays;
 
-use airlight::core::Light;
+use airlight::core::{Light, Reading, VolumeTexture};
 use airlight::data::{Volume, cloud, plume};
-use airlight::transmittance::{
-    Form, MapSettings, Precision, Reading, TransmittanceError, TransmittanceMap, VolumeTexture, Voxels,
-};
+use airlight::transmittance::{Form, MapSettings, Precision, TransmittanceError, TransmittanceMap, Voxels};
 use airlight_tests::parallel;
 use airlight_tests::reference::transmittance::{Basis, Profile, Series};
 use glam::{Mat4, Vec3};

@@ -11,11 +11,11 @@ mod media;
 #[path = "support/probing.rs"]
 mod probing;
 
-use airlight::core::DepthRange;
+use airlight::core::{DepthRange, Reading, VolumeTexture};
 use airlight::data::{Volume, burst, cloud};
 use airlight::transmittance::{
-    Composite, Form, MapSettings, MediumLighting, ParticleBuffer, ParticlePicture, Precision, Reading,
-    TransmittanceError, TransmittanceMap, VolumePicture, VolumeTexture,
+    Composite, Form, MapSettings, MediumLighting, ParticleBuffer, ParticlePicture, Precision,
+    TransmittanceError, TransmittanceMap, VolumePicture,
 };
 use airlight::validate::Definitions;
 use airlight::{Buffer, Pass, Resource, Texture};

@@ -99,6 +99,7 @@ modules! {
     core::noise ["core::finite"],
     core::ray_depth ["core::camera"],
     core::resolve_depth [],
+    core::volume [],
     transmittance::light_space ["core::light"],
     transmittance::map_texels ["core::finite"],
     transmittance::extinction_map ["core::cosine_basis", "transmittance::map_texels"],
@@ -108,9 +109,8 @@ modules! {
         "core::cosine_basis", "core::prefix_sum", "transmittance::map_texels", "transmittance::opacity_map"
     ],
     transmittance::transmittance_moments ["core::fourier_basis", "core::moment_bounds"],
-    transmittance::volume ["core::finite"],
     transmittance::particles ["core::finite", "core::light", "transmittance::light_space"],
-    transmittance::medium ["core::phase", "core::prefix_sum"],
+    transmittance::medium ["core::finite", "core::phase", "core::prefix_sum", "core::volume"],
     transmittance::seen_particles ["core::camera", "transmittance::particles"],
     transmittance::map_form [
         "core::cosine_basis", "transmittance::extinction_map", "transmittance::opacity_map",

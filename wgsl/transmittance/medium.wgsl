@@ -7,8 +7,10 @@
 // note: Pictures of media are premultiplied: linear RGB radiance that reaches the eye, and in alpha the transmittance to the
 // note: background, 1 where there is no medium. Over a picture they are radiance + alpha * background.
 
+#import airlight::core::finite::finite_or
 #import airlight::core::phase::henyey_greenstein
 #import airlight::core::prefix_sum::one_minus_exp
+#import airlight::core::volume::VolumeSpace
 
 /// How a medium scatters light. 32 bytes.
 struct MediumLighting {
@@ -25,6 +27,14 @@ struct MediumLighting {
 
 /// The greatest half float.
 const GREATEST_RADIANCE: f32 = 65504.0;
+
+/// More than any extinction may be, 1/m.
+const GREATEST_EXTINCTION: f32 = 1e6;
+
+/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
+fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
+    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
+}
 
 /// What was met on a view ray from the eye up to a place.
 struct Marched {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One sentence to the person at the keyboard, and the exit code that goes with it.
 
-use crate::core::{CameraError, LightError};
+use crate::core::{CameraError, LightError, VolumeTextureError};
 use crate::scattering::ScatteringError;
 use crate::scenes::SceneError;
 use crate::stylize::StylizeError;
@@ -132,6 +132,12 @@ impl From<StylizeError> for CommandError {
     }
 }
 
+impl From<VolumeTextureError> for CommandError {
+    fn from(error: VolumeTextureError) -> Self {
+        Self::failure(format!("--volume: {error}"))
+    }
+}
+
 impl From<TransmittanceError> for CommandError {
     fn from(error: TransmittanceError) -> Self {
         use TransmittanceError as E;
@@ -142,8 +148,13 @@ impl From<TransmittanceError> for CommandError {
             E::Splat(..) => "--map",
             E::Lighting { name: "albedo", .. } => "--albedo",
             E::Lighting { name: "g", .. } => "--g",
-            E::Size { .. } => return Self::failure(format!("--volume: {error}")),
-            E::Lighting { .. } | E::Range(_) | E::OtherMap { .. } | E::Reference(_) | E::Pass(_) => {
+            E::Volume(_) => return Self::failure(format!("--volume: {error}")),
+            E::Size { .. }
+            | E::Lighting { .. }
+            | E::Range(_)
+            | E::OtherMap { .. }
+            | E::Reference(_)
+            | E::Pass(_) => {
                 return Self::failure(error);
             }
         };

@@ -10,6 +10,7 @@ mod scan;
 mod shadow_views;
 mod sort;
 mod tonemap;
+mod volume;
 
 pub use camera::{Camera, CameraError, DepthRange, OrthographicView, PerspectiveView, View};
 pub use jitter::{Jitter, blue_noise_texture};
@@ -21,3 +22,4 @@ pub use scan::Scan;
 pub use shadow_views::{Cascades, MAX_VIEWS, ShadowViews};
 pub use sort::{Sort, SortParameters};
 pub use tonemap::{Tonemap, TonemapParameters};
+pub use volume::{Reading, VolumeSpace, VolumeTexture, VolumeTextureError};

@@ -2,6 +2,7 @@
 //! What is impossible with transmittance maps.
 
 use super::{Form, Precision};
+use crate::core::VolumeTextureError;
 use crate::gpu::GpuError;
 use crate::pass::PassError;
 
@@ -75,6 +76,9 @@ pub enum TransmittanceError {
     /// A map was given to the reference, or a light alone to a pass for maps.
     #[error("the reference {0}")]
     Reference(&'static str),
+    /// A volume cannot be uploaded or read so.
+    #[error(transparent)]
+    Volume(#[from] VolumeTextureError),
     /// A pass failed.
     #[error(transparent)]
     Pass(#[from] PassError),

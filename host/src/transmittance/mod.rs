@@ -27,4 +27,4 @@ pub use settings::{Form, MapSettings, Precision};
 pub use splat::Splat;
 pub use splat_fixed::{SplatFixed, SplatFixedBound};
 pub use volume_picture::{VolumePicture, VolumePictureBound};
-pub use voxels::{Reading, VolumeSpace, VolumeTexture, Voxels};
+pub use voxels::Voxels;

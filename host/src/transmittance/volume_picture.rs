@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures of volumes.
 
-use super::{MapSettings, MediumView, Reading, TransmittanceError, TransmittanceMap, VolumeTexture};
+use super::{MapSettings, MediumView, TransmittanceError, TransmittanceMap};
+use crate::core::{Reading, VolumeTexture};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Sampler, Texture};

@@ -3,11 +3,13 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{gpu, matrix, shaders, vector};
-use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView, View};
+use airlight::core::{
+    Camera, DepthRange, Light, OrthographicView, PerspectiveView, Reading, View, VolumeTexture,
+};
 use airlight::data::{Particles, Volume};
 use airlight::transmittance::{
-    MapSettings, MediumLighting, MediumView, ParticleBuffer, ParticlePicture, Reading, SplatFixed,
-    TransmittanceMap, VolumePicture, VolumeTexture, Voxels,
+    MapSettings, MediumLighting, MediumView, ParticleBuffer, ParticlePicture, SplatFixed, TransmittanceMap,
+    VolumePicture, Voxels,
 };
 use airlight::{Buffer, Texture};
 use airlight_tests::reference::camera::Camera as ReferenceCamera;

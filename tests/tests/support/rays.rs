@@ -3,11 +3,9 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{Random, gpu, host_light, light_matrix, shaders};
-use airlight::core::Light;
+use airlight::core::{Light, Reading, VolumeTexture};
 use airlight::data::Volume;
-use airlight::transmittance::{
-    MapSettings, Query, Reading, TransmittanceError, TransmittanceMap, VolumeTexture, Voxels,
-};
+use airlight::transmittance::{MapSettings, Query, TransmittanceError, TransmittanceMap, Voxels};
 pub use airlight_tests::media::Medium;
 use airlight_tests::reference::transmittance::Profile;
 use airlight_tests::{linear, media};

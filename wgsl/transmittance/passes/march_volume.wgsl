@@ -30,11 +30,9 @@
 #import airlight::core::finite::finite_or
 #import airlight::core::light::Light
 #import airlight::core::picture::picture_corner
+#import airlight::core::volume::{VolumeSpace, segment_in_box, march_steps, voxel_at, metres_across}
 #import airlight::transmittance::medium::{
-    MediumLighting, source_radiance, marched_nothing, marched_on, medium_pixel
-}
-#import airlight::transmittance::volume::{
-    VolumeSpace, segment_in_box, march_steps, voxel_at, extinction_of_value, metres_across
+    MediumLighting, source_radiance, marched_nothing, marched_on, medium_pixel, extinction_of_value
 }
 #ifndef REFERENCE
 #import airlight::transmittance::light_space::map_position

@@ -20,11 +20,10 @@
 // binding intervals: out, least and greatest occupied depth, 0..1; 1 and 0 where there is none. With BOUNDED only.
 
 #import airlight::core::light::Light
+#import airlight::core::volume::{VolumeSpace, segment_in_box, march_steps, voxel_at}
 #import airlight::transmittance::light_space::{map_point, map_range}
 #import airlight::transmittance::map_form::{contribution, LAYERS}
-#import airlight::transmittance::volume::{
-    VolumeSpace, segment_in_box, march_steps, voxel_at, extinction_of_value
-}
+#import airlight::transmittance::medium::extinction_of_value
 #ifdef BOUNDED
 #import airlight::transmittance::bounded_map::{depth_in_interval, length_in_interval}
 #endif

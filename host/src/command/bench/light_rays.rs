@@ -2,9 +2,9 @@
 //! Many light rays in one transmittance map, and how far each form of map is from them.
 
 use crate::command::CommandError;
-use crate::core::Light;
+use crate::core::{Light, Reading, VolumeTexture};
 use crate::data::Volume;
-use crate::transmittance::{Form, MapSettings, Query, Reading, TransmittanceMap, VolumeTexture, Voxels};
+use crate::transmittance::{Form, MapSettings, Query, TransmittanceMap, Voxels};
 use crate::{Gpu, Shaders};
 use airlight_tests::media::RANGE;
 use airlight_tests::parallel;

@@ -4,11 +4,11 @@
 use super::transmittance::{MAP, SYSTEM, form_name};
 use super::{Quality, Row, figure, interleaved, ratio, time};
 use crate::command::CommandError;
-use crate::core::{Camera, DepthRange, Light, PerspectiveView};
+use crate::core::{Camera, DepthRange, Light, PerspectiveView, Reading, VolumeTexture};
 use crate::data::{Random, Volume, cloud, plume};
 use crate::transmittance::{
-    Form, MapSettings, MediumLighting, MediumView, Precision, Query, Reading, TransmittanceMap,
-    VolumePicture, VolumePictureBound, VolumeTexture, Voxels,
+    Form, MapSettings, MediumLighting, MediumView, Precision, Query, TransmittanceMap, VolumePicture,
+    VolumePictureBound, Voxels,
 };
 use crate::{Bound, Buffer, Gpu, Shaders, Texture};
 use airlight_tests::error::{max_absolute, mean_absolute, relative_rmse};

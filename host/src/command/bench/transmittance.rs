@@ -4,11 +4,10 @@
 use super::light_rays::LightRays;
 use super::{Quality, Row, figure, interleaved, media_pictures, ratio, time};
 use crate::command::{CommandError, progress};
-use crate::core::Light;
+use crate::core::{Light, Reading, VolumeTexture};
 use crate::data::{Particles, burst, plume};
 use crate::transmittance::{
-    Form, MapSettings, ParticleBuffer, Precision, Reading, Splat, SplatFixed, TransmittanceMap,
-    VolumeTexture, Voxels,
+    Form, MapSettings, ParticleBuffer, Precision, Splat, SplatFixed, TransmittanceMap, Voxels,
 };
 use crate::{Gpu, Shaders};
 use airlight_tests::media::{Medium, STEPS, Uniform, medium};

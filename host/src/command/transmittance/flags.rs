@@ -2,7 +2,8 @@
 //! The flags of `airlight transmittance`.
 
 use crate::command::parse::{self, LightSpelling};
-use crate::transmittance::{Form, MapSettings, Precision, Reading};
+use crate::core::Reading;
+use crate::transmittance::{Form, MapSettings, Precision};
 use clap::ValueEnum;
 use glam::Vec3;
 use std::path::{Path, PathBuf};

@@ -6,13 +6,13 @@ use super::framing::Framing;
 use super::medium::{Matter, Medium, described};
 use crate::command::CommandError;
 use crate::command::scattering::Buffers;
-use crate::core::{Drawing, Raster, Sky};
+use crate::core::{Drawing, Raster, Sky, VolumeTexture};
 use crate::data::{Particles, Volume};
 use crate::formats::{Array, ArrayData};
 use crate::scattering::check_size;
 use crate::transmittance::{
     CheckParticles, Composite, MapSettings, MediumView, ParticleBuffer, ParticleCounts, ParticlePicture,
-    Splat, SplatFixed, TransmittanceMap, VolumePicture, VolumeTexture, Voxels,
+    Splat, SplatFixed, TransmittanceMap, VolumePicture, Voxels,
 };
 use crate::{Buffer, Gpu, Shaders, Texture};
 use glam::Vec3;

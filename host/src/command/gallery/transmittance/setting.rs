@@ -4,11 +4,10 @@
 use super::super::studio::Studio;
 use super::sky::{Sky, directions};
 use crate::command::CommandError;
-use crate::core::{Camera, Light, PerspectiveView};
+use crate::core::{Camera, Light, PerspectiveView, Reading, VolumeTexture};
 use crate::data::{Bounds, Volume};
 use crate::transmittance::{
-    Composite, MapSettings, MediumLighting, MediumView, Query, Reading, TransmittanceMap, VolumePicture,
-    VolumeTexture, Voxels,
+    Composite, MapSettings, MediumLighting, MediumView, Query, TransmittanceMap, VolumePicture, Voxels,
 };
 use crate::{Buffer, Texture};
 use glam::Vec3;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
-#define_import_path airlight::transmittance::volume
-// summary: A volume of extinction in the world: its box, voxels and how a ray passes it.
+#define_import_path airlight::core::volume
+// summary: A volume in the world: its box, voxels and how a ray passes it.
 // source: none; the slab test of ray tracing.
 // note: Unit space is the box 0..1 of the volume, texture coordinates of the 3D texture; voxel i lies at (i + 0.5) / size.
-
-#import airlight::core::finite::finite_or
 
 /// A volume in the world. 144 bytes.
 struct VolumeSpace {
@@ -12,8 +10,8 @@ struct VolumeSpace {
     unit_from_world: mat4x4<f32>,
     /// Its inverse.
     world_from_unit: mat4x4<f32>,
-    /// What values of the texture are multiplied by to give extinction in 1/m, from 0 up.
-    extinction_scale: f32,
+    /// What values of the texture are multiplied by: to give extinction in 1/m, say; from 0 up.
+    value_scale: f32,
     /// Metres from one sample of a march to the next at most, positive: a voxel.
     step_length: f32,
     reserved_a: f32,
@@ -22,8 +20,6 @@ struct VolumeSpace {
 
 /// Most samples of a march through one volume.
 const MOST_STEPS: f32 = 8192.0;
-/// More than any extinction may be, 1/m.
-const GREATEST_EXTINCTION: f32 = 1e6;
 
 /// The part of a segment that lies in the box: from and to, 0..1; equal where it misses. `origin`, `along`: of the
 /// segment, in unit space.
@@ -49,11 +45,6 @@ fn march_steps(metres: f32, volume: VolumeSpace) -> u32 {
 fn voxel_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
     let last = vec3<f32>(size - vec3<u32>(1u));
     return vec3<u32>(clamp(floor(unit * vec3<f32>(size)), vec3<f32>(0.0), last));
-}
-
-/// Extinction in 1/m of a value of the texture; 0 for what is not finite or negative.
-fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
-    return clamp(finite_or(value * volume.extinction_scale, 0.0), 0.0, GREATEST_EXTINCTION);
 }
 
 /// A length in metres that no segment in the box exceeds.
