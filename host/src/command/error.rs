@@ -166,7 +166,9 @@ impl From<StageError> for CommandError {
                 Self::misuse(flag, error)
             }
             StageError::Light(error) => match error {
-                LightError::Scene { .. } | LightError::Range { .. } => Self::failure(error),
+                LightError::Scene { .. } | LightError::Points | LightError::Range { .. } => {
+                    Self::failure(error)
+                }
                 LightError::Cascades(_)
                 | LightError::CascadesOfLocal
                 | LightError::Split(_)

@@ -19,6 +19,9 @@ pub enum LightError {
         /// Greatest corner.
         max: Vec3,
     },
+    /// Nothing to fit a shadow map to.
+    #[error("a shadow map cannot be fitted: there must be a point or more, all of them finite")]
+    Points,
     /// A light at a point that is nowhere.
     #[error("light position {0} is impossible: it must be finite")]
     Position(Vec3),
@@ -117,19 +120,60 @@ impl Light {
     /// # Errors
     /// [`LightError`].
     pub fn directional(towards: Vec3, radiance: Vec3, min: Vec3, max: Vec3) -> Result<Self, LightError> {
-        let direction = towards.as_dvec3().normalize_or_zero();
-        if !direction.is_finite() || direction == DVec3::ZERO {
-            return Err(LightError::Direction(towards));
-        }
         if !(min.is_finite() && max.is_finite() && min.cmple(max).all()) {
             return Err(LightError::Scene { min, max });
         }
+        let direction = unit_direction(towards)?;
         let view = light_view(direction);
-        let (low, high) = extent(view, &box_corners(min, max));
+        Ok(Self::over(direction, radiance, view, extent(view, &box_corners(min, max))))
+    }
+
+    /// A directional light whose shadow map tightly holds points in the world, metres, forward depth. Its range along the light
+    /// is that of the points, not of a box around them, which transmittance maps gain by: see
+    /// [`crate::data::Volume::occupied_points`].
+    ///
+    /// # Errors
+    /// [`LightError`].
+    pub fn directional_around(
+        towards: Vec3,
+        radiance: Vec3,
+        points: impl IntoIterator<Item = Vec3>,
+    ) -> Result<Self, LightError> {
+        Self::directional_around_balls(towards, radiance, points.into_iter().map(|point| (point, 0.0)))
+    }
+
+    /// The same around balls: middles and radii, metres.
+    ///
+    /// # Errors
+    /// [`LightError`].
+    pub fn directional_around_balls(
+        towards: Vec3,
+        radiance: Vec3,
+        balls: impl IntoIterator<Item = (Vec3, f32)>,
+    ) -> Result<Self, LightError> {
+        let direction = unit_direction(towards)?;
+        let view = light_view(direction);
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for (middle, radius) in balls {
+            let (seen, reach) =
+                (view.transform_point3(middle.as_dvec3()), DVec3::splat(f64::from(radius.abs())));
+            if !(seen.is_finite() && reach.is_finite()) {
+                return Err(LightError::Points);
+            }
+            (low, high) = (low.min(seen - reach), high.max(seen + reach));
+        }
+        if !low.cmple(high).all() {
+            return Err(LightError::Points);
+        }
+        Ok(Self::over(direction, radiance, view, (low, high)))
+    }
+
+    /// Towards `direction`, over what `view` sees from the least to the greatest coordinates.
+    fn over(direction: DVec3, radiance: Vec3, view: DMat4, (low, high): (DVec3, DVec3)) -> Self {
         let [low, high] = roomy(low, high);
         let projection = directx::orthographic(low.x, high.x, low.y, high.y, -high.z, -low.z);
         let clip_from_world = projection * view;
-        Ok(Self {
+        Self {
             clip_from_world: clip_from_world.as_mat4(),
             world_from_clip: clip_from_world.inverse().as_mat4(),
             direction: direction.as_vec3(),
@@ -141,7 +185,7 @@ impl Light {
             spot_cosines: Vec2::ZERO,
             reserved_a: 0.0,
             reserved_b: 0.0,
-        })
+        }
     }
 
     /// A spot with a perspective shadow map, forward depth, that holds its whole cone. `outer_degrees`,
@@ -236,6 +280,12 @@ pub(super) fn check_range(near: f32, far: f32) -> Result<(), LightError> {
     if near > 0.0 && far > near && far.is_finite() { Ok(()) } else { Err(LightError::Range { near, far }) }
 }
 
+fn unit_direction(towards: Vec3) -> Result<DVec3, LightError> {
+    let direction = towards.as_dvec3().normalize_or_zero();
+    let possible = direction.is_finite() && direction != DVec3::ZERO;
+    if possible { Ok(direction) } else { Err(LightError::Direction(towards)) }
+}
+
 pub(super) fn up_for(axis: DVec3) -> DVec3 {
     if axis.y.abs() > 0.999 { DVec3::X } else { DVec3::Y }
 }
@@ -294,6 +344,34 @@ mod tests {
         }
         assert!(Light::directional(Vec3::ZERO, Vec3::ONE, Vec3::ZERO, Vec3::ONE).is_err());
         assert!(Light::directional(Vec3::Y, Vec3::ONE, Vec3::ONE, Vec3::ZERO).is_err());
+    }
+
+    #[test]
+    fn a_light_around_balls_reaches_from_the_first_to_the_last_and_a_little_farther() {
+        let towards = Vec3::new(0.6, 0.0, 0.8);
+        let balls = [(Vec3::new(3.0, 1.0, 4.0), 0.5), (Vec3::new(-0.6, 2.0, -0.8), 0.25), (Vec3::Y, 1.0)];
+        let light = Light::directional_around_balls(towards, Vec3::ONE, balls).unwrap();
+        // Along the light the middles lie at 5, -1 and 0: from -1.25 to 5.5 m, with a room of 1.1 % at each end.
+        let range = light.world_from_clip.z_axis.truncate().length();
+        assert!((range / (1.022 * 6.75) - 1.0).abs() < 1e-3, "{range}");
+        let near = light.clip_from_world.project_point3(5.5 * towards);
+        let far = light.clip_from_world.project_point3(-1.25 * towards);
+        assert!((near.z - 0.0108).abs() < 2e-4 && (far.z - 0.9892).abs() < 2e-4, "{near} {far}");
+        // Up from 0 to 2.25 m.
+        let up = |y: f32| light.clip_from_world.project_point3(Vec3::new(0.0, y, 0.0)).y;
+        assert!(
+            (up(2.25) - 0.9733).abs() < 5e-3 && (up(0.0) + 0.9733).abs() < 5e-3,
+            "{} {}",
+            up(2.25),
+            up(0.0)
+        );
+        for wrong in [vec![], vec![(Vec3::NAN, 1.0)], vec![(Vec3::ZERO, 1.0), (Vec3::Y, f32::INFINITY)]] {
+            let error = Light::directional_around_balls(towards, Vec3::ONE, wrong).unwrap_err();
+            assert_eq!(error, LightError::Points);
+        }
+        assert!(Light::directional_around(Vec3::ZERO, Vec3::ONE, [Vec3::ONE]).is_err());
+        let point = Light::directional_around(Vec3::Y, Vec3::ONE, [Vec3::ONE]).unwrap();
+        assert!(point.world_from_clip.is_finite());
     }
 
     #[test]

@@ -42,10 +42,10 @@ impl Framing {
         let view =
             PerspectiveView { eye, target, field_of_view: flags.fov, near, far, depth: DepthRange::Forward };
         let camera = Camera::new(&view.into(), flags.size).map_err(StageError::Camera)?;
-        let light = flags.light.lighting(flags.radiance);
+        let light = medium.light(flags.light.lighting(flags.radiance)).map_err(StageError::Light)?;
         Ok(Self {
             camera,
-            light: light.fitted(&medium.bounds).map_err(StageError::Light)?,
+            light,
             // Rays to the corners of the far plane are longer than the plane is far.
             lighting: MediumLighting::new(flags.albedo, flags.g, (4.0 * far).min(1e7))?,
         })

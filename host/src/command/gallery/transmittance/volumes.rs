@@ -8,7 +8,7 @@ use super::setting::{Arrangement, Setting, build, upload};
 use super::sky::Sky;
 use super::{METHODS, Method};
 use crate::command::CommandError;
-use crate::core::{DepthRange, PerspectiveView};
+use crate::core::{DepthRange, Light, PerspectiveView};
 use crate::data::{self, Volume};
 use crate::transmittance::{Form, MapSettings, TransmittanceMap};
 use glam::Vec3;
@@ -82,7 +82,10 @@ fn section(
     volume: &Volume,
     scale: f32,
 ) -> Result<Section, CommandError> {
-    let setting = Setting::new(studio, arrangement, volume.bounds())?;
+    let points = volume.occupied_points();
+    let setting = Setting::new(studio, arrangement, |towards, radiance| {
+        Light::directional_around(towards, radiance, points.iter().copied())
+    })?;
     let uploaded = upload(studio, volume, scale)?;
     let fine = MapSettings::new(Form::Bounded, 16, MAP);
     let background = setting.background(&build(studio, fine, &setting.sun, &uploaded)?)?;
