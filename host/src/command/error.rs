@@ -143,7 +143,12 @@ impl From<TransmittanceError> for CommandError {
             E::Lighting { name: "albedo", .. } => "--albedo",
             E::Lighting { name: "g", .. } => "--g",
             E::Size { .. } => return Self::failure(format!("--volume: {error}")),
-            E::Lighting { .. } | E::Range(_) | E::OtherMap { .. } | E::Reference(_) | E::Pass(_) => {
+            E::Lighting { .. }
+            | E::Range(_)
+            | E::Leaning
+            | E::OtherMap { .. }
+            | E::Reference(_)
+            | E::Pass(_) => {
                 return Self::failure(error);
             }
         };

@@ -64,7 +64,7 @@ impl Volume {
     }
 
     /// Points in the world, metres, whose convex hull just holds all voxels with extinction and what is read between them and
-    /// their neighbours: what [`crate::core::Light::directional_around`] fits a map to. Of a volume without extinction the corners
+    /// their neighbours: what [`crate::core::Light::directional_leaning`] fits a map to. Of a volume without extinction the corners
     /// of the box around it.
     pub fn occupied_points(&self) -> Vec<Vec3> {
         let [width, height, slices] = self.size.map(|side| side as usize);

@@ -88,7 +88,7 @@ impl Medium {
     pub fn light(&self, light: Lighting) -> Result<Light, LightError> {
         match (light, &self.matter) {
             (Lighting::Directional { towards, radiance }, Matter::Volume(volume, _)) => {
-                Light::directional_around(towards, radiance, volume.occupied_points())
+                Light::directional_leaning(towards, radiance, volume.occupied_points())
             }
             (Lighting::Directional { towards, radiance }, Matter::Particles(particles, _)) if !self.boxed => {
                 Light::directional_around_balls(towards, radiance, particles.balls())

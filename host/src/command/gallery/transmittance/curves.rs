@@ -55,7 +55,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         ("edges", "A medium with sharp edges", &edges, 1.0, Vec3::X, Vec3::ZERO),
     ];
     for (file, name, volume, scale, towards, through) in media {
-        let light = Light::directional_around(towards, Vec3::ONE, volume.occupied_points())
+        let light = Light::directional_leaning(towards, Vec3::ONE, volume.occupied_points())
             .map_err(CommandError::failure)?;
         let ray = ray(&light, through);
         let curves = curves(studio, volume, scale, &light, &ray)?;

@@ -84,7 +84,7 @@ fn section(
 ) -> Result<Section, CommandError> {
     let points = volume.occupied_points();
     let setting = Setting::new(studio, arrangement, |towards, radiance| {
-        Light::directional_around(towards, radiance, points.iter().copied())
+        Light::directional_leaning(towards, radiance, points.iter().copied())
     })?;
     let uploaded = upload(studio, volume, scale)?;
     let fine = MapSettings::new(Form::Bounded, 16, MAP);
