@@ -128,7 +128,8 @@ fn flags_that_cannot_be_meant_together_are_refused() {
     let burst = |flags: &str, parts: &[&str]| bad(&format!("{BURST} {flags}"), parts);
     burst("--map tfm", &["--map", "`tfm`", "bounded or etm"]);
     burst("--map tfm-fourier", &["--map", "`tfm`", "bounded or etm"]);
-    burst("--map reference", &["--map", "`reference`", "bounded"]);
+    burst("--map reference --splat fixed", &["--splat", "no map"]);
+    burst("--map reference --count 200001", &["--map", "200001", "bounded"]);
     volume("--map reference --coefficients 4", &["--coefficients", "no map"]);
     volume("--map reference --map-size 4", &["--map-size", "no map"]);
     volume("--map reference --format float16", &["--format", "no map"]);

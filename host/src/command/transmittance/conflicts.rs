@@ -71,14 +71,10 @@ fn map(flags: &Options) -> Vec<Rule> {
             "--map",
             "`tfm` holds transmittance, which particles cannot add up to: take bounded or etm, or a --volume",
         ),
-        (
-            particles && reference,
-            "--map",
-            "`reference` marches through a --volume: take bounded for particles, whose error is least",
-        ),
         (reference && flags.coefficients.is_some(), "--coefficients", NO_MAP),
         (reference && flags.map_size.is_some(), "--map-size", NO_MAP),
         (reference && flags.format.is_some(), "--format", NO_MAP),
+        (reference && flags.splat.is_some(), "--splat", NO_MAP),
         (
             flags.monotone && !matches!(flags.map, MapSpelling::Etm | MapSpelling::Bounded),
             "--monotone",

@@ -24,7 +24,7 @@ pub enum MapSpelling {
     Moments,
     /// Two trigonometric moments.
     Trigonometric,
-    /// No map: a march to the light from every step; volumes only.
+    /// No map: a march to the light from every step of a view ray, or for each particle the sum over all of them.
     Reference,
 }
 

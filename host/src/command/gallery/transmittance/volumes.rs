@@ -74,7 +74,8 @@ pub fn cloud(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     section(studio, folder, "A cloud", &arrangement, &volume, 1.2)
 }
 
-fn section(
+/// A volume by every method. `scale`: from its values to extinction in 1/m.
+pub fn section(
     studio: &Studio,
     folder: &str,
     title: &str,
