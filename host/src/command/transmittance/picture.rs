@@ -24,9 +24,6 @@ const HORIZON: Vec3 = Vec3::new(0.18, 0.26, 0.38);
 /// What lies below, in haze too.
 const GROUND: Vec3 = Vec3::new(0.1, 0.14, 0.19);
 
-/// Most particles that the reference takes: seconds of a fast device, which gives up on longer work.
-const MOST_SUMMED: u32 = 200_000;
-
 /// What was drawn.
 pub struct Drawn {
     /// The medium over its background.
@@ -144,15 +141,6 @@ impl Studio<'_> {
             self.map(&map, buffers)?;
             bound
         } else {
-            if uploaded.len() > MOST_SUMMED {
-                return Err(CommandError::misuse(
-                    "--map",
-                    format!(
-                        "`reference` sums over all particles for each: {} are more than {MOST_SUMMED}, take bounded",
-                        uploaded.len()
-                    ),
-                ));
-            }
             let light = Buffer::uniform(gpu, &framing.light);
             let checked = check.bind_light(gpu, &light, ParticlePicture::REFERENCE_SIZE, &uploaded)?;
             check.record(&mut encoder, &checked, &uploaded)?;

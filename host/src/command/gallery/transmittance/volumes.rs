@@ -26,8 +26,8 @@ pub fn plume(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let arrangement = Arrangement {
         view: PerspectiveView {
             eye: Vec3::new(0.8, 0.7, 7.4),
-            target: Vec3::new(0.8, 2.35, 0.0),
-            field_of_view: 40.0,
+            target: Vec3::new(0.8, 2.5, 0.0),
+            field_of_view: 44.0,
             near: 0.1,
             far: 1000.0,
             depth: DepthRange::Forward,
