@@ -121,16 +121,12 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
             let share = (f32(i) + 0.5) / f32(steps);
             let unit = mix(enters, leaves, share);
             let optical_depth = extinction_at(unit) * metres / f32(steps);
-            var lit = 1.0;
-            // A loop, not a branch: some adapters run a branch where no lane takes it, but no such loop.
-            for (var dense = optical_depth > 0.0; dense; dense = false) {
 #ifdef REFERENCE
-                lit = marched_to_light(unit);
+            let lit = marched_to_light(unit);
 #else
-                let at = mix(map_enters, map_leaves, share);
-                lit = transmittance(at.xy, at.z);
+            let at = mix(map_enters, map_leaves, share);
+            let lit = transmittance(at.xy, at.z);
 #endif
-            }
             marched = marched_on(marched, optical_depth, lit);
         }
         next = run.end;

@@ -20,8 +20,8 @@ use glam::{Mat4, Vec3};
 
 /// The picture of the costs.
 const SIZE: [u32; 2] = [1280, 720];
-/// Every how many of its pixels the f64 picture is evaluated, odd: then middles of pixels are middles of coarse ones.
-const STRIDE: u32 = 5;
+/// Every how many of its columns and rows the f64 picture is evaluated, odd: then middles of pixels are middles of coarse ones.
+const STRIDE: [u32; 2] = [5, 15];
 /// Samples of each piece of work.
 const SAMPLES: usize = 3;
 /// What errors of pictures are.
@@ -77,15 +77,16 @@ impl Medium {
         MediumView { camera: &self.camera_buffer, lighting: &self.lighting_buffer, depth: &self.depth }
     }
 
-    /// The picture of `size` pixels by a march in f64, steps `voxels` of a voxel: RGB of each pixel.
-    fn exact(&self, size: [u32; 2], voxels: f64) -> Result<Vec<f64>, CommandError> {
+    /// The picture by a march in f64, steps `voxels` of a voxel: RGB of the middle pixel of each block of `stride` pixels.
+    fn exact(&self, stride: [u32; 2], voxels: f64) -> Result<Vec<f64>, CommandError> {
         let wide = |v: Vec3| linear::Vec3::from(v.to_array());
-        let camera = Camera::perspective(&self.view, size).map_err(CommandError::failure)?;
+        let full = self.depth.size();
+        let camera = Camera::perspective(&self.view, [full[0], full[1]]).map_err(CommandError::failure)?;
         let matrix = linear::Mat4::from(camera.clip_from_world.to_cols_array());
         let far = f64::from(camera.far_depth);
         let no_inverse = || CommandError::failure("a matrix has no inverse");
         let reference = ReferenceCamera::from_matrix(matrix, far).ok_or_else(no_inverse)?;
-        let [width, height] = size.map(|side| side as usize);
+        let [width, height] = [0, 1].map(|axis| (full[axis] / stride[axis]) as usize);
         let view = View {
             camera: &reference,
             width,
@@ -149,14 +150,14 @@ impl Lit {
         self.pass.record(encoder, &self.bound);
     }
 
-    /// Runs both; RGB of every `stride`-th pixel, from the middle of the first square of pixels on.
-    fn picture(&self, gpu: &Gpu, stride: u32) -> Result<Vec<f32>, CommandError> {
+    /// Runs both; RGB of every `stride`-th pixel, from the middle of the first block of pixels on.
+    fn picture(&self, gpu: &Gpu, stride: [u32; 2]) -> Result<Vec<f32>, CommandError> {
         let mut encoder = gpu.encoder();
         self.record(&mut encoder);
         gpu.submit(encoder)?;
         let width = self.bound.picture.size()[0] as usize;
         let picture = self.bound.picture.read(gpu).map_err(CommandError::failure)?;
-        Ok(colors(&every(&picture, width, stride as usize)))
+        Ok(colors(&every(&picture, width, stride.map(|side| side as usize))))
     }
 }
 
@@ -178,14 +179,14 @@ fn grid(volume: &Volume) -> Result<Grid<'_>, CommandError> {
     Ok(Grid { size, values: &volume.values, unit_from_world, linear: true })
 }
 
-/// The middle pixel, four values, of each square of `stride` pixels.
-fn every(picture: &[f32], width: usize, stride: usize) -> Vec<f32> {
-    let middle = stride / 2;
+/// The middle pixel, four values, of each block of `stride` pixels.
+fn every(picture: &[f32], width: usize, stride: [usize; 2]) -> Vec<f32> {
+    let middle = stride.map(|side| side / 2);
     let height = picture.len() / (4 * width);
-    let rows = (0..height / stride).map(|row| row * stride + middle);
+    let rows = (0..height / stride[1]).map(|row| row * stride[1] + middle[1]);
     rows.flat_map(|y| {
-        (0..width / stride).flat_map(move |column| {
-            let first = 4 * (y * width + column * stride + middle);
+        (0..width / stride[0]).flat_map(move |column| {
+            let first = 4 * (y * width + column * stride[0] + middle[0]);
             picture[first..first + 4].to_vec()
         })
     })
@@ -222,7 +223,7 @@ pub fn brute_force(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandErro
         ],
         SAMPLES,
     )?;
-    let exact = medium.exact(SIZE.map(|side| side / STRIDE), 0.5)?;
+    let exact = medium.exact(STRIDE, 0.5)?;
     let error = |lit: &Lit| lit.picture(gpu, STRIDE).map(|picture| relative_rmse(&picture, &exact));
     let baseline_error = error(&brute)?;
     let mut rows = Vec::new();
@@ -252,11 +253,11 @@ pub fn cloud_errors(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandErr
         volume.world_from_unit = Mat4::from_rotation_y(turn) * volume.world_from_unit;
         let medium =
             Medium::new(gpu, shaders, volume, (Vec3::new(4.0, 2.0, 8.0), Vec3::ZERO), towards, size)?;
-        let exact = medium.exact(size, 0.25)?;
-        let brute = relative_rmse(&medium.lit(gpu, shaders, None)?.picture(gpu, 1)?, &exact);
+        let exact = medium.exact([1, 1], 0.25)?;
+        let brute = relative_rmse(&medium.lit(gpu, shaders, None)?.picture(gpu, [1, 1])?, &exact);
         for (form, coefficients) in [(Form::Extinction, 4), (Form::Extinction, 16), (Form::Bounded, 4)] {
             let settings = MapSettings::new(form, coefficients, [128, 128]);
-            let picture = medium.lit(gpu, shaders, Some(settings))?.picture(gpu, 1)?;
+            let picture = medium.lit(gpu, shaders, Some(settings))?.picture(gpu, [1, 1])?;
             let error = relative_rmse(&picture, &exact);
             let name = format!("picture_error_{name}_{}_{coefficients}", form_name(form));
             let quality = Quality { metric: RADIANCE, error, baseline_error: brute };
@@ -320,11 +321,12 @@ mod tests {
     fn coarse_pictures_are_of_the_middles_of_squares() {
         // 6 x 3 pixels whose values are their numbers.
         let picture: Vec<f32> = (0..18).flat_map(|i| [i as f32; 4]).collect();
-        let middles = every(&picture, 6, 3);
+        let middles = every(&picture, 6, [3, 3]);
         assert_eq!(middles, [[7.0_f32; 4], [10.0; 4]].concat());
-        assert_eq!(every(&picture, 6, 1), picture);
+        assert_eq!(every(&picture, 6, [1, 1]), picture);
+        assert_eq!(every(&picture, 6, [3, 1])[..4], [1.0; 4]);
         assert_eq!(colors(&middles), [[7.0_f32; 3], [10.0; 3]].concat());
-        let odd = STRIDE % 2 == 1;
-        assert!(odd && SIZE.iter().all(|side| side % STRIDE == 0));
+        let fits = |axis: usize| STRIDE[axis] % 2 == 1 && SIZE[axis].is_multiple_of(STRIDE[axis]);
+        assert!(fits(0) && fits(1));
     }
 }
