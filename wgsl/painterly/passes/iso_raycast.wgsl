@@ -189,19 +189,23 @@ struct Targets {
     @location(3) distance: f32,
 }
 
-/// Change of the value a metre, world, by central differences of a voxel to both sides.
+/// Change of the value between two places of unit space that differ along one axis, over their difference there.
+fn slope_between(lower: vec3<f32>, upper: vec3<f32>, apart: f32) -> f32 {
+    return select(0.0, (value_at(upper) - value_at(lower)) / max(apart, 1e-20), apart > 0.0);
+}
+
+/// Change of the value a metre, world, by central differences of a voxel to both sides; shorter where there is no voxel.
 fn gradient_at(unit: vec3<f32>) -> vec3<f32> {
-    let size = vec3<f32>(textureDimensions(values));
-    let voxel = 1.0 / size;
-    let x = vec3<f32>(voxel.x, 0.0, 0.0);
-    let y = vec3<f32>(0.0, voxel.y, 0.0);
-    let z = vec3<f32>(0.0, 0.0, voxel.z);
-    let change = vec3<f32>(
-        value_at(unit + x) - value_at(unit - x),
-        value_at(unit + y) - value_at(unit - y),
-        value_at(unit + z) - value_at(unit - z),
+    let voxel = 1.0 / vec3<f32>(textureDimensions(values));
+    let lower = clamp(unit - voxel, 0.5 * voxel, 1.0 - 0.5 * voxel);
+    let upper = clamp(unit + voxel, 0.5 * voxel, 1.0 - 0.5 * voxel);
+    let apart = upper - lower;
+    let slopes = vec3<f32>(
+        slope_between(vec3<f32>(lower.x, unit.yz), vec3<f32>(upper.x, unit.yz), apart.x),
+        slope_between(vec3<f32>(unit.x, lower.y, unit.z), vec3<f32>(unit.x, upper.y, unit.z), apart.y),
+        slope_between(vec3<f32>(unit.xy, lower.z), vec3<f32>(unit.xy, upper.z), apart.z),
     );
-    return world_gradient(0.5 * size * change, volume.unit_from_world);
+    return world_gradient(slopes, volume.unit_from_world);
 }
 
 /// The normal towards the eye's side of a hit: against the gradient, or that of the face by which the ray enters what is
