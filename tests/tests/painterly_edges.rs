@@ -76,11 +76,11 @@ fn clip_planes_and_limits_cut() {
         // Only what is near is seen.
         let hit: Vec<f32> = whole.distance.iter().copied().filter(|distance| *distance >= 0.0).collect();
         let nearest = hit.iter().copied().fold(f32::INFINITY, f32::min);
-        setting.settings.distance_limit = nearest + 0.1;
+        setting.settings.distance_limit = nearest + 0.25;
         let near = setting.seen(PLAIN);
         hits_are_crossings("near", &setting, &near);
         assert!(
-            near.hits() < whole.hits() && near.distance.iter().all(|distance| *distance <= nearest + 0.1)
+            near.hits() < whole.hits() && near.distance.iter().all(|distance| *distance <= nearest + 0.25)
         );
     }
 }
@@ -113,7 +113,8 @@ fn rays_that_enter_by_a_face_have_its_normal() {
     let mut volume = sphere_field([24, 20, 16], 1.3);
     let turn = Mat4::from_rotation_z(0.4) * Mat4::from_rotation_y(0.5);
     volume.world_from_unit = turn * volume.world_from_unit;
-    let setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::new(0.6, 0.5, 1.0)));
+    let setting =
+        Setting::new(volume.clone(), &view_of(&volume, turn.transform_vector3(Vec3::new(0.8, 0.7, 1.0))));
     let seen = setting.seen(PLAIN);
     hits_are_crossings("cut sphere", &setting, &seen);
     let axes = [turn.x_axis, turn.y_axis, turn.z_axis].map(|axis| vector(axis.truncate()));
@@ -180,8 +181,8 @@ fn wild_and_thin_volumes_give_finite_pictures() {
     let volume = torus_field([40; 3], 0.55, 0.2);
     let view = view_of(&volume, Vec3::new(0.5, 0.4, 1.0));
     let mut wild = volume.clone();
-    for (i, value) in wild.values.iter_mut().enumerate().step_by(7) {
-        *value = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3e38, 60000.0][i / 7 % 5];
+    for (i, value) in wild.values.iter_mut().enumerate().step_by(97) {
+        *value = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3e38, 60000.0][i / 97 % 5];
     }
     let mut setting = Setting::new(wild.clone(), &view);
     // By the host, which replaces them; then as an engine might leave them to the pass.

@@ -59,7 +59,9 @@
 
 /// The part of a view ray that is marched.
 struct March {
+    /// World, metres.
     origin: vec3<f32>,
+    /// Unit, world.
     direction: vec3<f32>,
     /// Metres along the ray where it begins and ends.
     part: vec2<f32>,
@@ -69,8 +71,9 @@ struct March {
     enters: vec3<f32>,
     /// Unit space, from sample to sample.
     stride: vec3<f32>,
-    /// Samples are at `clamp(i - shift, 0, steps)` strides.
+    /// Samples lie at `clamp(i - shift, 0, steps)` strides.
     steps: f32,
+    /// 0..1.
     shift: f32,
     /// Samples, 0 where nothing of the volume is seen.
     count: u32,
@@ -78,10 +81,11 @@ struct March {
 
 /// What a ray meets.
 struct Hit {
+    /// Whether anything is met.
     found: bool,
     /// In strides from where the ray enters.
     at: f32,
-    /// Opacity less value's sign: 1 where greater values are more opaque, else -1; 0 where the ray begins in what is solid.
+    /// 1 where greater values are solid, -1 where lesser ones are; 0 where the ray begins in what is solid.
     rise: f32,
 }
 

@@ -22,7 +22,9 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let unlit = textureLoad(color, id.xy, 0);
-    let normal = textureLoad(surface, id.xy, 0).xyz;
+    let stored = textureLoad(surface, id.xy, 0).xyz;
+    // Half floats that were cut short are too short for a high power.
+    let normal = stored / max(length(stored), 1e-6);
     let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(id.xy) + 0.5));
     let lit = min(phong(lighting, unlit.xyz, normal, ray.direction), vec3<f32>(65504.0));
     textureStore(picture, id.xy, select(vec4<f32>(0.0), vec4<f32>(lit, unlit.w), unlit.w > 0.0));
