@@ -113,29 +113,46 @@ fn rays_that_enter_by_a_face_have_its_normal() {
     let mut volume = sphere_field([24, 20, 16], 1.3);
     let turn = Mat4::from_rotation_z(0.4) * Mat4::from_rotation_y(0.5);
     volume.world_from_unit = turn * volume.world_from_unit;
-    let setting =
-        Setting::new(volume.clone(), &view_of(&volume, turn.transform_vector3(Vec3::new(0.8, 0.7, 1.0))));
-    let seen = setting.seen(PLAIN);
-    hits_are_crossings("cut sphere", &setting, &seen);
     let axes = [turn.x_axis, turn.y_axis, turn.z_axis].map(|axis| vector(axis.truncate()));
-    let mut met = [0; 3];
-    setting.solid(|solid| {
-        for (i, ray) in setting.rays(solid).iter().enumerate() {
-            let Some(first) = ray.crossings.first().filter(|first| first.entered) else { continue };
-            let [x, y, z] = solid.unit(ray.origin + ray.direction * first.distance).unwrap();
-            for (axis, unit) in [x, y, z].into_iter().enumerate() {
-                let others = (0..3).filter(|a| *a != axis).map(|a| [x, y, z][a]);
-                let away_from_edges = others.into_iter().all(|u| (0.01..=0.99).contains(&u));
-                if unit.min(1.0 - unit) < 1e-9 && away_from_edges {
-                    let outward = axes[axis] * (unit - 0.5).signum();
-                    let off = triple(&seen.surface[4 * i..4 * i + 3]) - outward;
-                    assert!(off.length() < 2e-3, "{off:?}");
-                    met[axis] += 1;
+    for towards_eye in [Vec3::new(0.8, 0.7, 1.0), Vec3::new(-0.8, -0.7, -1.0)] {
+        let view = view_of(&volume, turn.transform_vector3(towards_eye));
+        let setting = Setting::new(volume.clone(), &view);
+        let seen = setting.seen(PLAIN);
+        hits_are_crossings("cut sphere", &setting, &seen);
+        let mut met = [0; 3];
+        setting.solid(|solid| {
+            for (i, ray) in setting.rays(solid).iter().enumerate() {
+                let Some(first) = ray.crossings.first().filter(|first| first.entered) else { continue };
+                let [x, y, z] = solid.unit(ray.origin + ray.direction * first.distance).unwrap();
+                for (axis, unit) in [x, y, z].into_iter().enumerate() {
+                    let others = (0..3).filter(|a| *a != axis).map(|a| [x, y, z][a]);
+                    let away_from_edges = others.into_iter().all(|u| (0.01..=0.99).contains(&u));
+                    if unit.min(1.0 - unit) < 1e-9 && away_from_edges {
+                        let outward = axes[axis] * (unit - 0.5).signum();
+                        let off = triple(&seen.surface[4 * i..4 * i + 3]) - outward;
+                        assert!(off.length() < 2e-3, "{off:?}");
+                        met[axis] += 1;
+                    }
                 }
             }
-        }
-    });
-    assert!(met.iter().all(|count| *count > 20), "{met:?}");
+        });
+        assert!(met.iter().all(|count| *count > 20), "{met:?}");
+    }
+}
+
+/// Rays along a plane are cut away whole or not at all.
+#[test]
+fn rays_along_a_clip_plane_are_cut_by_sides() {
+    let _turn = gpu::turn();
+    let volume = sphere_field([40; 3], 0.7);
+    let mut setting = Setting::new(volume.clone(), &parallel_view_of(&volume, Vec3::Z, DepthRange::Forward));
+    let whole = setting.seen(PLAIN);
+    setting.settings.clip_planes = vec![Vec4::new(2.0, 0.0, 0.0, 0.0)];
+    let seen = setting.seen(PLAIN);
+    assert!(whole.hits() > 400);
+    for (i, (found, uncut)) in seen.distance.iter().zip(&whole.distance).enumerate() {
+        assert_eq!(*found, if i % 64 < 32 { -1.0 } else { *uncut });
+    }
 }
 
 #[test]
@@ -196,9 +213,16 @@ fn wild_and_thin_volumes_give_finite_pictures() {
     let seen = setting.seen_of(&uploaded, PLAIN);
     seen.check();
     assert!(seen.hits() > 100);
-    // Where all is NaN there is value 0 throughout.
-    uploaded.texture.write(gpu(), &vec![f32::NAN; texels.len()]).unwrap();
-    assert_eq!(setting.seen_of(&uploaded, PLAIN).hits(), 0);
+    // Where nothing is finite there is texel 0 throughout, which is value 0.5.
+    for wild in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        uploaded.texture.write(gpu(), &vec![wild; texels.len()]).unwrap();
+        for (iso_value, box_is_seen) in [(0.45, true), (0.55, false)] {
+            setting.settings.iso_value = iso_value;
+            let seen = setting.seen_of(&uploaded, PLAIN);
+            seen.check();
+            assert_eq!(seen.hits() > 2000, box_is_seen, "{wild} {iso_value} {}", seen.hits());
+        }
+    }
     for size in [[1, 20, 20], [20, 1, 1], [1, 1, 1], [20, 20, 1]] {
         let voxels = size.iter().product::<u32>();
         let values =

@@ -74,15 +74,27 @@ struct ClippedRay {
     normal: vec3<f32>,
 }
 
-/// The value 0..1 of a texel; what is not finite counts as value 0.
+/// The value 0..1 of a texel; one that is not finite counts as 0.
 fn value_of_texel(texel: f32, scale: f32, offset: f32) -> f32 {
-    return clamp(finite_or(texel * scale + offset, 0.0), 0.0, 1.0);
+    return clamp(finite_or(texel, 0.0) * scale + offset, 0.0, 1.0);
 }
 
 /// Colour, linear RGB, and opacity 0..1 of a value 0..1. `transfer`: one row, linear RGB and opacity, filtered.
 fn classified(transfer: texture_2d<f32>, linear_sampler: sampler, value: f32) -> vec4<f32> {
     let width = f32(textureDimensions(transfer).x);
     return textureSampleLevel(transfer, linear_sampler, vec2<f32>((value * (width - 1.0) + 0.5) / width, 0.5), 0.0);
+}
+
+/// What is counted of the table's entries for solid values, lower than the iso-value by more than filters round.
+fn solid_threshold(iso_value: f32) -> f32 {
+    return iso_value * (1.0 - 1e-5);
+}
+
+/// Entries of a table of `entries` that lie between two values 0..1, ends excluded: the first and the one behind the last.
+fn entries_between(least: f32, greatest: f32, entries: u32) -> vec2<u32> {
+    let last = f32(max(entries, 1u) - 1u);
+    let first = clamp(floor(least * last) + 1.0, 0.0, last + 1.0);
+    return vec2<u32>(u32(first), u32(clamp(ceil(greatest * last), first, last + 1.0)));
 }
 
 /// A bracket, narrowed by the opacity at a place within it.

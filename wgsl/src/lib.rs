@@ -188,6 +188,7 @@ passes! {
     transmittance/composite,
     painterly/iso_raycast,
     painterly/shade,
+    painterly/solid_bricks,
     scattering/slices,
     scattering/rectify,
     scattering/rectify_projective,

@@ -27,6 +27,7 @@ pub use light_image::{LightImage, LightImageError};
 #[cfg(feature = "command")]
 pub use load::{
     MediumFileError, MeshError, PARTICLE_COLUMNS, load_mesh, load_particles, load_volume, mesh_from_bytes,
+    volume_from_bytes,
 };
 pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};
 pub use particles::{Particle, Particles, burst};

@@ -2,7 +2,7 @@
 //! Casts view rays at a surface.
 
 use super::{IsoFrame, IsoSettings, IsoSurface, IsoVolume, PainterlyError, SurfaceLighting, Transfer};
-use crate::core::{Camera, Jitter, VolumeSpace, blue_noise_texture};
+use crate::core::{Camera, Jitter, VolumeSpace, blue_noise_texture, brick_count};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Sampler, Texture};
@@ -16,6 +16,8 @@ use wgpu::TextureFormat;
 pub struct IsoForm {
     /// How starts of steps are spread.
     pub jitter: Jitter,
+    /// Bricks in which nothing is solid are passed over, as [`super::SolidBricks`] has last found them.
+    pub skipping: bool,
     /// Colours are left unlit, for [`super::Shade`].
     pub deferred: bool,
     /// Nothing but distances.
@@ -26,6 +28,7 @@ impl IsoForm {
     fn definitions(self) -> Definitions {
         let flags = [
             self.jitter.definition(),
+            self.skipping.then_some("SKIPPING"),
             self.deferred.then_some("DEFERRED"),
             self.distance_only.then_some("DISTANCE_ONLY"),
         ];
@@ -73,6 +76,7 @@ pub struct IsoBound {
     volume: Buffer,
     surface: Buffer,
     lighting: Buffer,
+    brick_distances: Texture,
     /// What is written; of [`IsoForm::distance_only`] the distance alone.
     pub targets: IsoTargets,
 }
@@ -81,6 +85,21 @@ impl IsoBound {
     /// Uniform of the camera, [`Camera`].
     pub fn camera(&self) -> &Buffer {
         &self.camera
+    }
+
+    /// Uniform of [`VolumeSpace`], where the volume lies.
+    pub fn volume(&self) -> &Buffer {
+        &self.volume
+    }
+
+    /// Uniform of [`IsoSurface`].
+    pub fn surface(&self) -> &Buffer {
+        &self.surface
+    }
+
+    /// Of each brick to the nearest in which anything is solid, in bricks, r32uint; what [`super::SolidBricks`] has last found.
+    pub fn brick_distances(&self) -> &Texture {
+        &self.brick_distances
     }
 
     /// Uniform of [`SurfaceLighting`].
@@ -130,6 +149,8 @@ impl IsoRaycast {
         let space = uniform(VolumeSpace::min_size().get());
         let surface = uniform(IsoSurface::min_size().get());
         let lighting = uniform(SurfaceLighting::min_size().get());
+        // A new texture holds zeros, and so passes over nothing.
+        let brick_distances = Texture::storage_volume(gpu, brick_count(volume.size), TextureFormat::R32Uint);
         let targets = IsoTargets::new(gpu, size);
         let mut resources: Vec<(&str, Resource<'_>)> = vec![
             ("camera", (&camera).into()),
@@ -140,10 +161,12 @@ impl IsoRaycast {
             ("values", (&volume.texture).into()),
             ("transfer", (&transfer.texture).into()),
             ("linear_sampler", (&self.sampler).into()),
+            ("brick_distances", (&brick_distances).into()),
         ];
         resources.extend(self.blue_noise.as_ref().map(|tile| ("blue_noise", tile.into())));
         let bound = self.pass.bind_known(gpu, &resources)?;
-        Ok(IsoBound { bound, camera, previous_camera, volume: space, surface, lighting, targets })
+        let volume = space;
+        Ok(IsoBound { bound, camera, previous_camera, volume, surface, lighting, brick_distances, targets })
     }
 
     /// Says what the next recorded frame shows of `volume`, which was bound.

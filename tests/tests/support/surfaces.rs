@@ -7,7 +7,8 @@ use crate::probing::hold;
 use airlight::core::{Camera, DepthRange, Jitter, OrthographicView, PerspectiveView, View};
 use airlight::data::{Volume, load_volume};
 use airlight::painterly::{
-    IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, Shade, SurfaceLighting, Transfer,
+    BrickRanges, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, Shade, SolidBricks, SurfaceLighting,
+    Transfer,
 };
 use airlight_tests::linear;
 use airlight_tests::reference::camera::Camera as ReferenceCamera;
@@ -24,7 +25,8 @@ pub const PIXELS: usize = 64 * 48;
 pub const RAMP: [[f32; 4]; 2] = [[0.5, 0.25, 0.125, 0.0], [1.0, 0.75, 0.5, 1.0]];
 
 /// All targets, steps from where rays enter.
-pub const PLAIN: IsoForm = IsoForm { jitter: Jitter::None, deferred: false, distance_only: false };
+pub const PLAIN: IsoForm =
+    IsoForm { jitter: Jitter::None, skipping: false, deferred: false, distance_only: false };
 
 /// What was read back.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,11 +101,26 @@ impl Setting {
 
     /// All targets of a volume that was uploaded.
     pub fn seen_of(&self, volume: &IsoVolume, form: IsoForm) -> Seen {
+        self.seen_with(volume, form, None).0
+    }
+
+    /// All targets of a volume that was uploaded, skipping by the ranges of its bricks if they are given; and the distances
+    /// of its bricks.
+    pub fn seen_with(
+        &self,
+        volume: &IsoVolume,
+        form: IsoForm,
+        ranges: Option<&BrickRanges>,
+    ) -> (Seen, Vec<u32>) {
         let transfer = Transfer::new(gpu(), &self.table).unwrap();
         let pass = IsoRaycast::new(gpu(), shaders(), form).unwrap();
         let bound = pass.bind(gpu(), volume, &transfer, SIZE).unwrap();
         pass.set(gpu(), &bound, volume, &self.frame, &self.settings, &self.lighting).unwrap();
         let mut encoder = gpu().encoder();
+        if let Some(ranges) = ranges {
+            let solid = SolidBricks::new(gpu(), shaders()).unwrap();
+            solid.record(gpu(), &mut encoder, ranges, &transfer, &bound).unwrap();
+        }
         pass.record(&mut encoder, &bound);
         let shade = form.deferred.then(|| {
             let shade = Shade::new(gpu(), shaders()).unwrap();
@@ -116,7 +133,7 @@ impl Setting {
         let color = shade.as_ref().map_or(&targets.color, |shaded| &shaded.picture);
         let [color, surface, flow, distance] =
             [color, &targets.surface, &targets.flow, &targets.distance].map(|t| t.read(gpu()).unwrap());
-        Seen { color, surface, flow, distance }
+        (Seen { color, surface, flow, distance }, bound.brick_distances().read_words(gpu()).unwrap())
     }
 
     /// The camera in f64.

@@ -6,9 +6,11 @@
 // note: What is lit, told and written is found after the march. Where a ray enters what is solid, on a face of the box or at a
 // note: clip plane, the normal is that of the face; where it begins there, it points at the eye.
 // note: All targets have 24 bytes a pixel, so that 8 of WebGPU's 32 are left.
-// note: Texels that are not finite count as value 0 after scale and offset, and so does what a filter makes of them.
+// note: Texels that are not finite count as 0, and so does what a filter makes of them. With SKIPPING every target holds the same
+// note: bits: samples in empty bricks are passed over, and no others.
 // definition DISTANCE_ONLY: nothing but the distance is written, at location 0.
 // definition DEFERRED: the colour is what the table says, for `shade` to light; without `lighting`.
+// definition SKIPPING: bricks in which nothing is solid are passed over.
 // definition JITTER_GRADIENT: steps begin at a part of a step that differs from pixel to pixel, by gradient noise.
 // definition JITTER_BLUE_NOISE: the same by blue noise.
 // binding camera: the camera, perspective or orthographic.
@@ -19,6 +21,7 @@
 // binding values: the volume, of any float format that filters.
 // binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
+// binding brick_distances: of each brick to the nearest in which anything is solid, in bricks, r32uint; with SKIPPING only.
 // binding blue_noise: a tile of blue noise, 0..1, r32float or r8unorm; with JITTER_BLUE_NOISE only.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
@@ -33,6 +36,9 @@
 #ifndef DEFERRED
 #import airlight::painterly::iso_surface::{SurfaceLighting, phong}
 #endif
+#endif
+#ifdef SKIPPING
+#import airlight::core::bricks::{Run, run_of_samples}
 #endif
 #ifdef JITTER_GRADIENT
 #import airlight::core::jitter::gradient_noise_offset
@@ -55,6 +61,9 @@
 #endif
 #ifdef JITTER_BLUE_NOISE
 @group(#{GROUP}) @binding(8) var blue_noise: texture_2d<f32>;
+#endif
+#ifdef SKIPPING
+@group(#{GROUP}) @binding(9) var brick_distances: texture_3d<u32>;
 #endif
 
 /// The part of a view ray that is marched.
@@ -138,17 +147,51 @@ fn value_along(march: March, at: f32) -> f32 {
     return value_at(march.enters + at * march.stride);
 }
 
+/// Whether the sample `index` is solid.
+fn is_solid(march: March, index: u32) -> bool {
+    return opacity_of_value(value_along(march, sample_place(march, index))) >= surface.iso_value;
+}
+
+#ifdef SKIPPING
+fn next_run(march: March, index: u32) -> Run {
+    let unit = march.enters + sample_place(march, index) * march.stride;
+    return run_of_samples(brick_distances, textureDimensions(values), unit, march.stride, index, march.count);
+}
+
+/// The first sample that is solid; `count` where none is.
+fn first_solid(march: March) -> u32 {
+    var i = 0u;
+    var found = false;
+    while !found && i < march.count {
+        var run = next_run(march, i);
+        // To the next brick that may hold something, before any sample is read: neighbouring rays then read together.
+        while run.begin == run.end && run.end < march.count {
+            run = next_run(march, run.end);
+        }
+        i = run.begin;
+        while i < run.end {
+            if is_solid(march, i) {
+                found = true;
+                break;
+            }
+            i++;
+        }
+    }
+    return i;
+}
+#else
 /// The first sample that is solid; `count` where none is.
 fn first_solid(march: March) -> u32 {
     var i = 0u;
     while i < march.count {
-        if opacity_of_value(value_along(march, sample_place(march, i))) >= surface.iso_value {
+        if is_solid(march, i) {
             break;
         }
         i++;
     }
     return i;
 }
+#endif
 
 /// Where a ray crosses the surface before sample `index`, the first that is solid.
 fn refine(march: March, index: u32) -> Hit {

@@ -34,6 +34,14 @@ pub fn load_volume(path: impl AsRef<Path>, voxel: f32) -> Result<Volume, MediumF
     Err(MediumFileError::UnknownExtension { path: path.to_owned(), wanted: ".nii, .nii.gz or .npy" })
 }
 
+/// A volume from the bytes of a NIfTI file that is part of the program. `name` stands for its path in errors.
+///
+/// # Errors
+/// As [`load_volume`].
+pub fn volume_from_bytes(name: &str, bytes: &[u8]) -> Result<Volume, MediumFileError> {
+    nifti::load(Path::new(name), bytes)
+}
+
 fn array(path: &Path, voxel: f32) -> Result<Volume, MediumFileError> {
     let array = read_npy(path)?;
     let sides: Option<Vec<u32>> = array.shape.iter().map(|side| u32::try_from(*side).ok()).collect();
