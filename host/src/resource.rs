@@ -180,6 +180,12 @@ impl Texture {
         Self::create(gpu, size, format, usage, wgpu::TextureViewDimension::D3)
     }
 
+    /// A 3D texture that passes write as storage and read.
+    pub fn storage_volume(gpu: &Gpu, size: [u32; 3], format: wgpu::TextureFormat) -> Self {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        Self::create(gpu, size, format, usage, wgpu::TextureViewDimension::D3)
+    }
+
     /// One layer, to be bound where a pass takes a single texture. Read back it is still the whole array.
     pub(crate) fn of_layer(&self, layer: u32) -> Self {
         Self { raw: self.raw.clone(), view: self.layer(layer), dimension: wgpu::TextureViewDimension::D2 }

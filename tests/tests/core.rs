@@ -18,7 +18,7 @@ use gpu::{Probe, Random, gpu, shaders};
 use probing::{f, hold, worst};
 
 /// Every function of the core modules, each with a test here or in one of `core_*.rs`.
-const COVERED: [(&str, &[&str]); 16] = [
+const COVERED: [(&str, &[&str]); 18] = [
     // In tests/tests/core_cosine.rs.
     (
         "cosine_basis",
@@ -104,6 +104,9 @@ const COVERED: [(&str, &[&str]); 16] = [
     ("ray_depth", &["ray_depth", "distance_on_ray", "depth_on_ray"]),
     ("resolve_depth", &["averaging_extinction", "distance_of_transmittance"]),
     ("picture", &["picture_corner"]),
+    // In tests/tests/core_bricks.rs; runs of samples as wholes in tests/tests/transmittance_bricks.rs.
+    ("bricks", &["brick_count", "brick_at", "samples_alike", "run_of_samples"]),
+    ("volume", &["segment_in_box", "march_steps", "voxel_at", "metres_across"]),
     // In tests/tests/core_sort.rs.
     ("sort", &["ascending_key", "key_digit", "one_counted", "counted_together", "counted"]),
     // In tests/tests/core_noise.rs.

@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 use airlight::core::{
-    Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters, TonemapParameters,
-    VolumeSpace,
+    BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
+    TonemapParameters, VolumeSpace,
 };
 use airlight::painterly::{IsoSurface, MOST_CLIP_PLANES, SurfaceLighting};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
@@ -234,6 +234,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         extinction: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32,
     });
     twin!(twins: SortParameters { count: u32, shift: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: BrickThreshold { value: f32, reserved_a: f32, reserved_b: f32, reserved_c: f32 });
     twin!(twins: VolumeSpace {
         unit_from_world: Mat4, world_from_unit: Mat4, value_scale: f32, step_length: f32,
         reserved_a: f32, reserved_b: f32,

@@ -168,7 +168,8 @@ fn entry(line: &str) -> Option<&str> {
 }
 
 /// Modules that hold what several passes bind.
-const CALLBACKS: [&str; 9] = [
+const CALLBACKS: [&str; 10] = [
+    "transmittance/map_texels.wgsl",
     "transmittance/map_form.wgsl",
     "transmittance/transmittance_map.wgsl",
     "scattering/lit.wgsl",

@@ -3,7 +3,8 @@
 //!
 //! A shader is three things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
 //! and constants: no bindings, no entry points. A *callback* (`lit`, `prefiltered`,
-//! `column_weights`, `rank_sort`, `evaluated` with its two variants, `map_form` and `transmittance_map`, among the modules)
+//! `column_weights`, `rank_sort`, `evaluated` with its two variants, `map_form`, `map_texels` and `transmittance_map`, among the
+//! modules)
 //! holds bindings that several passes share behind functions, for an engine to replace. A
 //! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
@@ -100,6 +101,7 @@ modules! {
     core::ray_depth ["core::camera"],
     core::resolve_depth [],
     core::volume [],
+    core::bricks [],
     transmittance::light_space ["core::light"],
     transmittance::map_texels ["core::finite"],
     transmittance::extinction_map ["core::cosine_basis", "transmittance::map_texels"],
@@ -174,7 +176,7 @@ modules! {
 
 passes! {
     core/raster,
-    core/scan, core/sort,
+    core/brick_distances, core/brick_occupied, core/brick_ranges, core/scan, core/sort,
     core/tonemap,
     core/resolve_depth,
     transmittance/voxels,

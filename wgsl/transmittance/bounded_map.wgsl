@@ -7,7 +7,7 @@
 // note: is therefore the mean of four transmittances.
 
 #import airlight::transmittance::extinction_map::{extinction_optical_depth, transmittance_of}
-#import airlight::transmittance::map_texels::{Footprint, footprint_texel, footprint_weight}
+#import airlight::transmittance::map_texels::{Footprint, footprint_alone, footprint_texel, footprint_weight}
 
 /// Shortest interval that is told from a point, over the range of the map.
 const LEAST_INTERVAL: f32 = 1e-6;
@@ -32,7 +32,7 @@ fn bounded_transmittance(
     for (var corner = 0u; corner < select(4u, 1u, alone); corner++) {
         let texel = footprint_texel(place, corner);
         let own = depth_in_interval(textureLoad(intervals, texel, 0).xy, depth);
-        let single = Footprint(texel.xx, texel.yy, vec2<f32>(0.0));
+        let single = footprint_alone(textureDimensions(map), texel);
         let optical_depth = extinction_optical_depth(map, single, own, layers, monotone);
         sum += footprint_weight(place, corner) * transmittance_of(optical_depth);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cameras, lights and the passes that every system shares: the host's side of `wgsl/core`.
 
+mod bricks;
 mod camera;
 mod jitter;
 mod light;
@@ -12,6 +13,7 @@ mod sort;
 mod tonemap;
 mod volume;
 
+pub use bricks::{BrickThreshold, Bricks, brick_count};
 pub use camera::{Camera, CameraError, DepthRange, OrthographicView, PerspectiveView, View};
 pub use jitter::{Jitter, blue_noise_texture};
 pub use light::{DIRECTIONAL, Light, LightError, POINT, SPOT, direction_from_angles};

@@ -60,6 +60,8 @@ pub struct VolumeTexture {
     pub texture: Texture,
     /// Where it lies.
     pub space: Buffer,
+    /// Distance of each brick to the nearest occupied one, in bricks, r32uint; a single 0 until [`super::Bricks::give`].
+    pub brick_distances: Texture,
     reading: Reading,
 }
 
@@ -87,7 +89,9 @@ impl VolumeTexture {
             reserved_a: 0.0,
             reserved_b: 0.0,
         };
-        Ok(Self { texture, space: Buffer::uniform(gpu, &space), reading })
+        // A new texture holds zeros.
+        let brick_distances = Texture::volume(gpu, [1; 3], wgpu::TextureFormat::R32Uint);
+        Ok(Self { texture, space: Buffer::uniform(gpu, &space), brick_distances, reading })
     }
 
     /// Whether it can be read so.

@@ -5,7 +5,7 @@ use super::{Form, MapSettings, TransmittanceError};
 use crate::core::{DIRECTIONAL, Light};
 use crate::gpu::Gpu;
 use crate::pass::Resource;
-use crate::resource::{Buffer, Texture};
+use crate::resource::{Buffer, Sampler, Texture};
 
 /// A transmittance map of a directional light, over the clip space of its shadow map.
 pub struct TransmittanceMap {
@@ -17,6 +17,7 @@ pub struct TransmittanceMap {
     pub coefficients: Texture,
     /// Least and greatest occupied depth, 0..1, of each texel; of [`Form::Bounded`] only.
     pub intervals: Option<Texture>,
+    sampler: Sampler,
 }
 
 impl TransmittanceMap {
@@ -37,13 +38,17 @@ impl TransmittanceMap {
         let coefficients = Texture::array(gpu, [width, height, settings.layers()], settings.format(), usage);
         let intervals = (settings.form == Form::Bounded)
             .then(|| Texture::storage(gpu, settings.size, wgpu::TextureFormat::Rg32Float));
-        Ok(Self { settings, light: Buffer::uniform(gpu, light), coefficients, intervals })
+        let (light, sampler) = (Buffer::uniform(gpu, light), Sampler::linear(gpu));
+        Ok(Self { settings, light, coefficients, intervals, sampler })
     }
 
     /// What passes bind of it.
     pub fn resources(&self) -> Vec<(&'static str, Resource<'_>)> {
-        let mut resources =
-            vec![("light", (&self.light).into()), ("coefficients", (&self.coefficients).into())];
+        let mut resources = vec![
+            ("light", (&self.light).into()),
+            ("coefficients", (&self.coefficients).into()),
+            ("map_sampler", (&self.sampler).into()),
+        ];
         if let Some(intervals) = &self.intervals {
             resources.push(("intervals", intervals.into()));
         }

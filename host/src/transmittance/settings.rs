@@ -117,14 +117,21 @@ impl MapSettings {
         }
     }
 
-    /// Definitions of the passes that read such a map; an engine's own pass over `transmittance/transmittance_map` wants
-    /// the same.
-    pub fn reading_definitions(&self) -> Definitions {
+    /// Definitions of the form, which all its passes share.
+    pub(super) fn form_definitions(&self) -> Definitions {
         let mut definitions = Definitions::new().set("COEFFICIENTS", self.coefficients as i32);
         for flag in self.form.flags() {
             definitions = definitions.flag(*flag);
         }
         definitions
+    }
+
+    /// Definitions of the passes that read such a map; an engine's own pass over `transmittance/transmittance_map` wants
+    /// the same.
+    pub fn reading_definitions(&self) -> Definitions {
+        let definitions = self.form_definitions();
+        let filters = self.precision == Precision::Half && self.form != Form::Bounded;
+        if filters { definitions.flag("FILTERED") } else { definitions }
     }
 
     /// The same with the Fejér window, where the form has one.
@@ -136,7 +143,7 @@ impl MapSettings {
 
     /// Definitions of the passes that build it.
     pub(super) fn building_definitions(&self) -> Definitions {
-        let definitions = self.reading_definitions();
+        let definitions = self.form_definitions();
         match self.precision {
             Precision::Single => definitions,
             Precision::Half => definitions.flag("RGBA16FLOAT"),

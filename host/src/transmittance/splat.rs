@@ -30,7 +30,7 @@ impl Splat {
         }
         // Blending does not ask for the format of the storage texture.
         let composed = shaders
-            .compose_with("transmittance/splat", &settings.reading_definitions())
+            .compose_with("transmittance/splat", &settings.form_definitions())
             .map_err(crate::pass::PassError::from)?;
         let stages = RenderStages {
             vertex: "vertex_particle",

@@ -115,6 +115,7 @@ impl VolumePicture {
             ("lighting", view.lighting.into()),
             ("volume", (&volume.space).into()),
             ("extinction", (&volume.texture).into()),
+            ("brick_distances", (&volume.brick_distances).into()),
             ("volume_sampler", (&self.sampler).into()),
             ("depth", view.depth.into()),
         ]);

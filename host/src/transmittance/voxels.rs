@@ -52,6 +52,7 @@ impl Voxels {
         resources.extend([
             ("volume", (&volume.space).into()),
             ("extinction", (&volume.texture).into()),
+            ("brick_distances", (&volume.brick_distances).into()),
             ("volume_sampler", (&self.sampler).into()),
         ]);
         Ok(self.pass.bind_known(gpu, &resources)?)

@@ -11,8 +11,10 @@
 // definition TRIGONOMETRIC: two trigonometric moments.
 // definition BOUNDED: an extinction map over the occupied interval of each texel.
 // definition MONOTONE: with the Fejer window, extinction maps only.
+// definition FILTERED: bilinear means are read through a sampler: for maps of rgba16float, not BOUNDED.
 // definition NEAREST: the nearest texel instead of a bilinear read.
 // binding coefficients: the layers of the map, rgba32float or rgba16float.
+// binding map_sampler: linear, clamped to the edge; with FILTERED only.
 // binding intervals: least and greatest occupied depth, 0..1, rg32float; with BOUNDED only.
 // binding camera: the camera, perspective or orthographic.
 // binding light: the directional light of the map.

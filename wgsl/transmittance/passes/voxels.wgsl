@@ -3,6 +3,7 @@
 // source: Gautron et al., "Extinction transmittance maps" (2011), Eq. 1; Delalandre et al. (2011) with FUNCTION.
 // note: Steps are of a voxel at most and of equal length from where the ray enters the volume to where it leaves it; the sample in
 // note: the middle stands for the whole step, whose projection is exact. Values that are not finite or negative are 0.
+// note: Runs of samples among empty bricks are passed over; what is found is the same without them.
 // note: BOUNDED marches twice: for the steps that hold anything, then for the projection.
 // definition COEFFICIENTS: numbers a texel, four a layer: 4, 8 or 16, of the moments 8; 4 where it is not given.
 // definition FUNCTION: transmittance function map; without this and the next four an extinction map of cosines.
@@ -16,9 +17,11 @@
 // binding volume: where the volume lies.
 // binding extinction: the volume, any float format; with LINEAR one that filters.
 // binding volume_sampler: linear, clamped to the edge; with LINEAR only.
+// binding brick_distances: of core/brick_distances, for the volume; or a single 0.
 // binding coefficients: out, the layers of the map.
 // binding intervals: out, least and greatest occupied depth, 0..1; 1 and 0 where there is none. With BOUNDED only.
 
+#import airlight::core::bricks::run_of_samples
 #import airlight::core::light::Light
 #import airlight::core::volume::{VolumeSpace, segment_in_box, march_steps, voxel_at}
 #import airlight::transmittance::light_space::{map_point, map_range}
@@ -49,6 +52,8 @@ const GREATEST: f32 = 1e30;
 @group(#{GROUP}) @binding(5) var intervals: texture_storage_2d<rg32float, write>;
 #endif
 
+@group(#{GROUP}) @binding(6) var brick_distances: texture_3d<u32>;
+
 /// Extinction at a place in unit space, 1/m.
 fn extinction_at(unit: vec3<f32>) -> f32 {
 #ifdef LINEAR
@@ -75,14 +80,20 @@ fn march_voxels(@builtin(global_invocation_id) id: vec3<u32>) {
     let steps = march_steps((part.y - part.x) * range, volume);
     let depth_step = (part.y - part.x) / f32(steps);
     let metres = depth_step * range;
+    let step = depth_step * along;
 
 #ifdef BOUNDED
     var interval = vec2<f32>(1.0, 0.0);
-    for (var i = 0u; i < steps; i++) {
-        let depth = part.x + (f32(i) + 0.5) * depth_step;
-        let occupied = extinction_at(origin + depth * along) * metres > 0.0;
-        let reached = vec2<f32>(depth - 0.5 * depth_step, depth + 0.5 * depth_step);
-        interval = select(interval, vec2<f32>(min(interval.x, reached.x), max(interval.y, reached.y)), occupied);
+    for (var next = 0u; next < steps;) {
+        let at = origin + (part.x + (f32(next) + 0.5) * depth_step) * along;
+        let run = run_of_samples(brick_distances, textureDimensions(extinction), at, step, next, steps);
+        for (var i = run.begin; i < run.end; i++) {
+            let depth = part.x + (f32(i) + 0.5) * depth_step;
+            let occupied = extinction_at(origin + depth * along) * metres > 0.0;
+            let reached = vec2<f32>(depth - 0.5 * depth_step, depth + 0.5 * depth_step);
+            interval = select(interval, vec2<f32>(min(interval.x, reached.x), max(interval.y, reached.y)), occupied);
+        }
+        next = run.end;
     }
     textureStore(intervals, id.xy, vec4<f32>(interval, 0.0, 0.0));
 #endif
@@ -96,24 +107,37 @@ fn march_voxels(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     var passed = 0.0;
 #endif
-    for (var i = 0u; i < steps; i++) {
-        let depth = part.x + (f32(i) + 0.5) * depth_step;
-        let optical_depth = extinction_at(origin + depth * along) * metres;
+    for (var next = 0u; next < steps;) {
+        let at = origin + (part.x + (f32(next) + 0.5) * depth_step) * along;
+        let run = run_of_samples(brick_distances, textureDimensions(extinction), at, step, next, steps);
 #ifdef FUNCTION
-        let own = contribution(depth, 0.5 * depth_step);
-        let weight = depth_step * exp(-passed) * mean_transmittance(optical_depth);
-        passed += optical_depth;
-#else
-        let weight = optical_depth;
-#ifdef BOUNDED
-        let own = contribution(depth_in_interval(interval, depth), length_in_interval(interval, 0.5 * depth_step));
-#else
-        let own = contribution(depth, 0.5 * depth_step);
-#endif
-#endif
+        // Where nothing is, transmittance stays.
+        let half = 0.5 * f32(run.begin - next) * depth_step;
+        let stays = contribution(part.x + f32(next) * depth_step + half, half);
         for (var layer = 0u; layer < LAYERS; layer++) {
-            sums[layer] += weight * own.layers[layer];
+            sums[layer] += 2.0 * half * exp(-passed) * stays.layers[layer];
         }
+#endif
+        for (var i = run.begin; i < run.end; i++) {
+            let depth = part.x + (f32(i) + 0.5) * depth_step;
+            let optical_depth = extinction_at(origin + depth * along) * metres;
+#ifdef FUNCTION
+            let own = contribution(depth, 0.5 * depth_step);
+            let weight = depth_step * exp(-passed) * mean_transmittance(optical_depth);
+            passed += optical_depth;
+#else
+            let weight = optical_depth;
+#ifdef BOUNDED
+            let own = contribution(depth_in_interval(interval, depth), length_in_interval(interval, 0.5 * depth_step));
+#else
+            let own = contribution(depth, 0.5 * depth_step);
+#endif
+#endif
+            for (var layer = 0u; layer < LAYERS; layer++) {
+                sums[layer] += weight * own.layers[layer];
+            }
+        }
+        next = run.end;
     }
 #ifdef FUNCTION
     let rest = 1.0 - part.y;

@@ -4,7 +4,7 @@
 use super::transmittance::{MAP, SYSTEM, form_name};
 use super::{Quality, Row, figure, interleaved, ratio, time};
 use crate::command::CommandError;
-use crate::core::{Camera, DepthRange, Light, PerspectiveView, Reading, VolumeTexture};
+use crate::core::{Bricks, Camera, DepthRange, Light, PerspectiveView, Reading, VolumeTexture};
 use crate::data::{Random, Volume, cloud, plume};
 use crate::transmittance::{
     Form, MapSettings, MediumLighting, MediumView, Precision, Query, TransmittanceMap, VolumePicture,
@@ -43,6 +43,7 @@ struct Medium {
 impl Medium {
     fn new(
         gpu: &Gpu,
+        shaders: &Shaders,
         volume: Volume,
         (eye, target): (Vec3, Vec3),
         towards: Vec3,
@@ -59,9 +60,9 @@ impl Medium {
         let camera = Camera::perspective(&view, size).map_err(CommandError::failure)?;
         let depth = Texture::storage(gpu, size, wgpu::TextureFormat::R32Float);
         depth.write(gpu, &vec![camera.far_depth; (size[0] * size[1]) as usize])?;
+        let uploaded = uploaded(gpu, shaders, &volume)?;
         Ok(Self {
-            uploaded: VolumeTexture::new(gpu, &volume, 1.0, Reading::Linear)
-                .map_err(CommandError::failure)?,
+            uploaded,
             camera_buffer: Buffer::uniform(gpu, &camera),
             light_buffer: Buffer::uniform(gpu, &light),
             lighting_buffer: Buffer::uniform(gpu, &lighting),
@@ -160,6 +161,16 @@ impl Lit {
     }
 }
 
+/// A volume whose bricks are known.
+pub fn uploaded(gpu: &Gpu, shaders: &Shaders, volume: &Volume) -> Result<VolumeTexture, CommandError> {
+    let mut uploaded =
+        VolumeTexture::new(gpu, volume, 1.0, Reading::Linear).map_err(CommandError::failure)?;
+    Bricks::new(gpu, shaders)
+        .and_then(|bricks| bricks.give(gpu, &mut uploaded))
+        .map_err(CommandError::failure)?;
+    Ok(uploaded)
+}
+
 fn grid(volume: &Volume) -> Result<Grid<'_>, CommandError> {
     let matrix = linear::Mat4::from(volume.world_from_unit.to_cols_array());
     let unit_from_world =
@@ -189,9 +200,11 @@ fn colors<T: Copy>(picture: &[T]) -> Vec<T> {
 
 /// A marched plume lit through a map, the map's building counted in, against marches to the light from every step.
 pub fn brute_force(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
-    let target = Vec3::new(0.0, 2.5, 0.0);
-    let place = (target + Vec3::new(3.0, 0.5, 6.0), target);
-    let medium = Medium::new(gpu, plume([96, 240, 96], 9), place, Vec3::new(0.5, 0.8, 0.3), SIZE)?;
+    // The plume fills the height of the picture and a third of its width.
+    let target = Vec3::new(0.0, 3.0, 0.0);
+    let place = (target + Vec3::new(1.2, 0.2, 2.4), target);
+    let volume = plume([192, 480, 192], 9);
+    let medium = Medium::new(gpu, shaders, volume, place, Vec3::new(0.5, 0.8, 0.3), SIZE)?;
     let settings = |form, coefficients| MapSettings {
         precision: Precision::Half,
         ..MapSettings::new(form, coefficients, MAP)
@@ -238,7 +251,8 @@ pub fn cloud_errors(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandErr
         let mut volume = cloud([40, 24, 32], 9);
         volume.values.iter_mut().for_each(|value| *value *= density);
         volume.world_from_unit = Mat4::from_rotation_y(turn) * volume.world_from_unit;
-        let medium = Medium::new(gpu, volume, (Vec3::new(4.0, 2.0, 8.0), Vec3::ZERO), towards, size)?;
+        let medium =
+            Medium::new(gpu, shaders, volume, (Vec3::new(4.0, 2.0, 8.0), Vec3::ZERO), towards, size)?;
         let exact = medium.exact(size, 0.25)?;
         let brute = relative_rmse(&medium.lit(gpu, shaders, None)?.picture(gpu, 1)?, &exact);
         for (form, coefficients) in [(Form::Extinction, 4), (Form::Extinction, 16), (Form::Bounded, 4)] {
@@ -279,7 +293,7 @@ pub fn plume_errors(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandErr
         let at = |k: usize| grid.extinction(wide(points[i]) + direction * ((k as f64 + 0.5) * step));
         (-(0..STEPS).map(at).sum::<f64>() * step).exp()
     });
-    let uploaded = VolumeTexture::new(gpu, &volume, 1.0, Reading::Linear).map_err(CommandError::failure)?;
+    let uploaded = uploaded(gpu, shaders, &volume)?;
     let mut rows = Vec::new();
     for form in [Form::Extinction, Form::Bounded] {
         let settings = MapSettings::new(form, 16, [256, 256]);

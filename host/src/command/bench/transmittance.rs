@@ -4,7 +4,7 @@
 use super::light_rays::LightRays;
 use super::{Quality, Row, figure, interleaved, media_pictures, ratio, time};
 use crate::command::{CommandError, progress};
-use crate::core::{Light, Reading, VolumeTexture};
+use crate::core::{Light, Reading};
 use crate::data::{Particles, burst, plume};
 use crate::transmittance::{
     Form, MapSettings, ParticleBuffer, Precision, Splat, SplatFixed, TransmittanceMap, Voxels,
@@ -98,7 +98,7 @@ fn builds(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let bounds = volume.bounds();
     let light = Light::directional(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, bounds.min, bounds.max)
         .map_err(CommandError::failure)?;
-    let uploaded = VolumeTexture::new(gpu, &volume, 1.0, Reading::Linear).map_err(CommandError::failure)?;
+    let uploaded = media_pictures::uploaded(gpu, shaders, &volume)?;
     let forms = [(Form::Extinction, 4), (Form::Function, 4), (Form::Bounded, 4), (Form::Extinction, 16)];
     let mut built = Vec::new();
     for (form, coefficients) in forms {

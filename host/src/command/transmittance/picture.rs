@@ -6,7 +6,7 @@ use super::framing::Framing;
 use super::medium::{Matter, Medium, described};
 use crate::command::CommandError;
 use crate::command::scattering::Buffers;
-use crate::core::{Drawing, Raster, Sky, VolumeTexture};
+use crate::core::{Bricks, Drawing, Raster, Sky, VolumeTexture};
 use crate::data::{Particles, Volume};
 use crate::formats::{Array, ArrayData};
 use crate::scattering::check_size;
@@ -96,7 +96,8 @@ impl Studio<'_> {
     ) -> Result<Texture, CommandError> {
         let Self { gpu, shaders, flags, framing } = *self;
         let reading = flags.reading();
-        let uploaded = VolumeTexture::new(gpu, volume, scale, reading)?;
+        let mut uploaded = VolumeTexture::new(gpu, volume, scale, reading)?;
+        Bricks::new(gpu, shaders)?.give(gpu, &mut uploaded)?;
         let mut encoder = gpu.encoder();
         let bound = if let Some(settings) = flags.settings() {
             let map = TransmittanceMap::new(gpu, settings, &framing.light)?;

@@ -4,7 +4,7 @@
 use super::super::studio::Studio;
 use super::sky::{Sky, directions};
 use crate::command::CommandError;
-use crate::core::{Camera, Light, PerspectiveView, Reading, VolumeTexture};
+use crate::core::{Bricks, Camera, Light, PerspectiveView, Reading, VolumeTexture};
 use crate::data::{Bounds, Volume};
 use crate::transmittance::{
     Composite, MapSettings, MediumLighting, MediumView, Query, TransmittanceMap, VolumePicture, Voxels,
@@ -147,7 +147,9 @@ impl<'a> Setting<'a> {
 
 /// A volume for pictures, thinned or thickened.
 pub fn upload(studio: &Studio, volume: &Volume, scale: f32) -> Result<VolumeTexture, CommandError> {
-    Ok(VolumeTexture::new(&studio.gpu, volume, scale, Reading::Linear)?)
+    let mut uploaded = VolumeTexture::new(&studio.gpu, volume, scale, Reading::Linear)?;
+    Bricks::new(&studio.gpu, &studio.shaders)?.give(&studio.gpu, &mut uploaded)?;
+    Ok(uploaded)
 }
 
 /// A map of the volume, built.
