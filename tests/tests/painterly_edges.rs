@@ -155,6 +155,18 @@ fn rays_along_a_clip_plane_are_cut_by_sides() {
     }
 }
 
+/// Solid is only the last half voxel before rays leave.
+#[test]
+fn the_last_sample_lies_where_rays_leave() {
+    let _turn = gpu::turn();
+    let values = (0..400).map(|i| 1.0 - (i / 16) as f32 / 24.0).collect();
+    let volume = Volume::new([4, 4, 25], values, sphere_field([1; 3], 0.5).world_from_unit).unwrap();
+    let mut setting = Setting::new(volume.clone(), &parallel_view_of(&volume, Vec3::Z, DepthRange::Forward));
+    setting.settings.iso_value = 0.99;
+    setting.settings.steps_per_voxel = 1.0;
+    hits_are_crossings("far face", &setting, &setting.seen(PLAIN));
+}
+
 #[test]
 fn parallel_rays_are_those_of_an_eye_afar() {
     let _turn = gpu::turn();
