@@ -111,7 +111,7 @@ impl Default for IsoSettings {
         Self {
             iso_value: 0.5,
             steps_per_voxel: 2.0,
-            refinements: 5,
+            refinements: 3,
             distance_limit: 1e4,
             clip_planes: Vec::new(),
         }

@@ -153,6 +153,9 @@ fn is_solid(march: March, index: u32) -> bool {
 }
 
 #ifdef SKIPPING
+/// Samples that are read from where a run begins that may hold something.
+const TOGETHER: u32 = 8u;
+
 fn next_run(march: March, index: u32) -> Run {
     let unit = march.enters + sample_place(march, index) * march.stride;
     return run_of_samples(brick_distances, textureDimensions(values), unit, march.stride, index, march.count);
@@ -169,7 +172,9 @@ fn first_solid(march: March) -> u32 {
             run = next_run(march, run.end);
         }
         i = run.begin;
-        while i < run.end {
+        // As many samples for all: some lie beyond the brick, where nothing is solid, but neighbouring rays stay together.
+        let end = min(i + TOGETHER, march.count);
+        while i < end {
             if is_solid(march, i) {
                 found = true;
                 break;
