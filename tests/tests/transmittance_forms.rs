@@ -12,7 +12,7 @@ mod probing;
 #[path = "support/rays.rs"]
 mod rays;
 
-use airlight::transmittance::Form;
+use airlight::transmittance::{Form, MapSettings, Precision};
 use airlight_tests::media::{self, EACH, OPTICAL_DEPTHS as TOTALS, STEPS as LENGTH};
 use airlight_tests::parallel;
 use airlight_tests::reference::transmittance::{
@@ -200,6 +200,31 @@ fn intervals_are_not_mixed_but_transmittances_are() {
     }
     hold("bounded, from its reference", from_reference, 1e-5);
     hold("error of bounded over that of plain", error / error_of_plain, 0.2);
+}
+
+#[test]
+fn half_floats_are_filtered_as_single_ones_are_mixed() {
+    let _turn = gpu::turn();
+    let mut random = Random(78);
+    let extinctions = (0..64).map(|_| medium(Medium::Smoke, LENGTH, 3.0, &mut random));
+    let rays = Rays { extinctions: extinctions.collect() };
+    let depths = depths();
+    // Beyond the first and the last texel's middle too.
+    let points: Vec<Vec3> = (0..64)
+        .flat_map(|ray| depths.iter().map(move |depth| (ray, *depth)))
+        .map(|(ray, depth)| rays.point(ray, depth).lerp(rays.point(ray + 1, depth), [0.3, -0.45][ray % 2]))
+        .collect();
+    for form in [Form::Extinction, Form::Opacity, Form::Function, Form::FunctionPeriodic] {
+        for coefficients in [4, 16] {
+            let of = |precision| {
+                let settings = MapSettings { precision, ..rays.settings(form, coefficients) };
+                ask(&rays.map(settings, &light_along_z(1.0)).unwrap(), false, &points)
+            };
+            let (single, half) = (of(Precision::Single), of(Precision::Half));
+            let away = single.iter().zip(&half).map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max);
+            hold(&format!("{form:?} of {coefficients}"), away, 1e-3);
+        }
+    }
 }
 
 #[test]
