@@ -128,7 +128,8 @@ fn flags_that_cannot_be_meant_together_are_refused() {
     let burst = |flags: &str, parts: &[&str]| bad(&format!("{BURST} {flags}"), parts);
     burst("--map tfm", &["--map", "`tfm`", "bounded or etm"]);
     burst("--map tfm-fourier", &["--map", "`tfm`", "bounded or etm"]);
-    burst("--map reference", &["--map", "`reference`", "bounded"]);
+    burst("--map reference --splat fixed", &["--splat", "no map"]);
+    bad("--particles burst --count 200001 --map reference", &["--map", "200001", "bounded"]);
     volume("--map reference --coefficients 4", &["--coefficients", "no map"]);
     volume("--map reference --map-size 4", &["--map-size", "no map"]);
     volume("--map reference --format float16", &["--format", "no map"]);
@@ -140,6 +141,9 @@ fn flags_that_cannot_be_meant_together_are_refused() {
         burst(&format!("--map {map} --splat blend"), &["--splat", "`blend`", "fixed"]);
     }
     volume("--splat fixed", &["--splat", "leave it out"]);
+    volume("--camera orthographic --fov 30", &["--fov", "--height"]);
+    volume("--height 3", &["--height", "--camera orthographic"]);
+    volume("--camera orthographic --height 0", &["--height"]);
     burst("--splat blend", &["--splat", "`blend`", "etm and fom"]);
     burst("--map etm --splat blend --format float32", &["--format", "float16, or --splat fixed"]);
     for light in ["spot:0,4,0,0,0,0.1,30", "point:0,3,0"] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Every intermediate buffer of scattering and of stylization against its snapshot, on small scenes of the
-//! tests' own. `make bless` replaces what has changed; look at the pictures at full size first.
+//! Every intermediate buffer of scattering and of stylization, and transmittance maps, against their snapshots, on small scenes of
+//! the tests' own. `make bless` replaces what has changed; look at the pictures at full size first.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/gpu.rs"]
@@ -8,7 +8,8 @@ mod gpu;
 #[path = "support/snapshot.rs"]
 mod snapshot;
 
-use airlight::core::{DepthRange, Tonemap};
+use airlight::core::{DepthRange, Light, Reading, Tonemap, VolumeTexture};
+use airlight::data::{burst, cloud};
 use airlight::scattering::{
     Along, BasisFormat, Composite, Inputs, March, Prefiltered, Settings, Visibility, Weighting,
 };
@@ -17,7 +18,11 @@ use airlight::stylize::{
     Restyle, ShadowMaps, ShadowOperator, ShadowStyle, StylizedShadows, Transfer, TransferError, Width,
     read_transfer, shadow_map_extent,
 };
+use airlight::transmittance::{
+    Form as MapForm, MapSettings, ParticleBuffer, Precision, Splat, SplatFixed, TransmittanceMap, Voxels,
+};
 use airlight::{Stage, Texture};
+use glam::Vec3;
 use gpu::{TestScene, gpu, shaders};
 use snapshot::{Buffer, Mode, Picture, Tolerance, assert_buffer, assert_picture, mode};
 use std::path::Path;
@@ -180,6 +185,75 @@ fn torus_stylized() {
     let composed = composite.run(gpu(), &inputs, &stage.pictures.surface, &restyle.restyled).unwrap();
     let pixels = Tonemap::new(gpu(), shaders()).unwrap().run(gpu(), &composed, 1.0).unwrap();
     assert_picture(&name("picture"), &gpu().description(), &Picture { size: PICTURE, pixels }, 0.99);
+}
+
+/// Layers of a map, and the intervals of a bounded one.
+fn assert_map(name: &str, map: &TransmittanceMap, tolerance: Tolerance) {
+    for layer in 0..map.settings.layers() as usize {
+        assert_buffer(&format!("{name}_{layer}"), &buffer(&map.coefficients, layer, 4, tolerance));
+    }
+    if let Some(intervals) = &map.intervals {
+        assert_buffer(&format!("{name}_intervals"), &buffer(intervals, 0, 2, tolerance));
+    }
+}
+
+#[test]
+fn maps_of_a_volume() {
+    let _turn = gpu::turn();
+    let volume = cloud([20, 12, 16], 9);
+    let towards = Vec3::new(0.5, 0.8, 0.3);
+    let light = Light::directional_leaning(towards, Vec3::ONE, volume.occupied_points()).unwrap();
+    let uploaded = VolumeTexture::new(gpu(), &volume, 1.0, Reading::Linear).unwrap();
+    // A step more or less at the rim of the volume is another sum on another adapter.
+    let sums = tolerance(2e-3, 2e-3, 0.02);
+    for (name, form, coefficients) in [
+        ("extinction", MapForm::Extinction, 8),
+        ("bounded", MapForm::Bounded, 4),
+        ("opacity", MapForm::Opacity, 4),
+        ("function", MapForm::Function, 4),
+        ("function_periodic", MapForm::FunctionPeriodic, 4),
+        ("power", MapForm::PowerMoments, 8),
+        ("trigonometric", MapForm::TrigonometricMoments, 8),
+    ] {
+        let settings = MapSettings::new(form, coefficients, [24, 20]);
+        let map = TransmittanceMap::new(gpu(), settings, &light).unwrap();
+        let voxels = Voxels::new(gpu(), shaders(), settings, Reading::Linear).unwrap();
+        let mut encoder = gpu().encoder();
+        voxels.record(&mut encoder, &voxels.bind(gpu(), &map, &uploaded).unwrap());
+        gpu().submit(encoder).unwrap();
+        assert_map(&format!("cloud_map_{name}"), &map, sums);
+    }
+}
+
+#[test]
+fn maps_of_particles() {
+    let _turn = gpu::turn();
+    let particles = burst(60, 5);
+    let light =
+        Light::directional_around_balls(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, particles.balls()).unwrap();
+    let uploaded = ParticleBuffer::new(gpu(), &particles).unwrap();
+    for (name, form, coefficients, fixed) in [
+        ("blended", MapForm::Extinction, 4, false),
+        ("extinction", MapForm::Extinction, 4, true),
+        ("bounded", MapForm::Bounded, 4, true),
+        ("power", MapForm::PowerMoments, 8, true),
+    ] {
+        let precision = if fixed { Precision::Single } else { Precision::Half };
+        let settings = MapSettings { precision, ..MapSettings::new(form, coefficients, [32, 28]) };
+        let map = TransmittanceMap::new(gpu(), settings, &light).unwrap();
+        let mut encoder = gpu().encoder();
+        if fixed {
+            let splat = SplatFixed::new(gpu(), shaders(), settings).unwrap();
+            splat.record(&mut encoder, &splat.bind(gpu(), &map, &uploaded).unwrap()).unwrap();
+        } else {
+            let splat = Splat::new(gpu(), shaders(), settings).unwrap();
+            splat.record(&mut encoder, &splat.bind(gpu(), &map, &uploaded).unwrap(), &map, &uploaded);
+        }
+        gpu().submit(encoder).unwrap();
+        // Half floats of sums of some ten particles; in fixed point steps of 4e-6.
+        let rounding = if fixed { tolerance(1e-4, 1e-4, 0.01) } else { tolerance(1e-3, 5e-3, 0.01) };
+        assert_map(&format!("burst_map_{name}"), &map, rounding);
+    }
 }
 
 // The machinery itself.

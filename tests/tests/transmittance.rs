@@ -13,8 +13,10 @@ mod probing;
 mod rays;
 
 use airlight::core::{Light, Reading, VolumeTexture};
-use airlight::data::{Volume, cloud, plume};
-use airlight::transmittance::{Form, MapSettings, Precision, TransmittanceError, TransmittanceMap, Voxels};
+use airlight::data::{Particle, Particles, Volume, cloud, plume};
+use airlight::transmittance::{
+    Form, MapSettings, ParticleBuffer, Precision, SplatFixed, TransmittanceError, TransmittanceMap, Voxels,
+};
 use airlight_tests::parallel;
 use airlight_tests::reference::transmittance::{Basis, Profile, Series};
 use glam::{Mat4, Vec3};
@@ -196,13 +198,13 @@ fn a_cloud_and_a_plume_under_a_slanting_light_are_marched_truly() {
     let _turn = gpu::turn();
     let mut random = Random(3);
     let media = [
-        ("cloud", cloud([40, 24, 32], 9), [[0.016, 0.13], [4e-3, 0.04]]),
-        ("plume", plume([32, 80, 32], 9), [[0.013, 0.1], [3e-3, 0.03]]),
+        ("cloud", cloud([40, 24, 32], 9), [[3e-3, 0.025], [3e-3, 0.025]]),
+        ("plume", plume([32, 80, 32], 9), [[3e-3, 0.035], [1.5e-3, 0.02]]),
     ];
     for (name, mut volume, budgets) in media {
         volume.world_from_unit = Mat4::from_rotation_y(0.6) * volume.world_from_unit;
-        let bounds = volume.bounds();
-        let light = Light::directional(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, bounds.min, bounds.max).unwrap();
+        let towards = Vec3::new(0.5, 0.8, 0.3);
+        let light = Light::directional_leaning(towards, Vec3::ONE, volume.occupied_points()).unwrap();
         let uploaded = VolumeTexture::new(gpu(), &volume, 1.0, Reading::Linear).unwrap();
         // Where there is anything to be lit.
         let points: Vec<Vec3> = std::iter::repeat_with(|| [0; 3].map(|_| random.unit()))
@@ -242,6 +244,73 @@ fn a_cloud_and_a_plume_under_a_slanting_light_are_marched_truly() {
         let deep = points.iter().filter(|point| marched(&volume, **point, light.direction) < 0.5).count();
         println!("{name}: {deep} of {} points in shadow", points.len());
         assert!(deep > 500);
+    }
+}
+
+/// Turned volumes in a map that is fitted to their occupied voxels: the range is shorter, and before it, behind it and
+/// beside it everything is as it was.
+#[test]
+fn a_fitted_range_leaves_nothing_out() {
+    let _turn = gpu::turn();
+    let mut random = Random(17);
+    for (name, mut volume) in [("cloud", cloud([40, 24, 32], 9)), ("plume", plume([32, 80, 32], 9))] {
+        volume.world_from_unit = Mat4::from_rotation_y(0.6) * volume.world_from_unit;
+        let bounds = volume.bounds();
+        let towards = Vec3::new(0.5, 0.8, 0.3);
+        let whole = Light::directional(towards, Vec3::ONE, bounds.min, bounds.max).unwrap();
+        let fitted = Light::directional_leaning(towards, Vec3::ONE, volume.occupied_points()).unwrap();
+        let range = |light: &Light| light.world_from_clip.z_axis.truncate().length();
+        println!("{name}: {} m of {} m", range(&fitted), range(&whole));
+        assert!(range(&fitted) < 0.45 * range(&whole));
+        // Anywhere about the volume, most of it empty.
+        let points: Vec<Vec3> = (0..2000)
+            .map(|_| Vec3::from([0; 3].map(|_| random.between(-0.1, 1.1) as f32)))
+            .map(|unit| volume.world_from_unit.transform_point3(unit))
+            .collect();
+        let outside = points.iter().map(|point| fitted.clip_from_world.project_point3(*point));
+        let outside =
+            outside.filter(|clip| clip.z < 0.0 || clip.z > 1.0 || clip.truncate().abs().max_element() > 1.0);
+        assert!(outside.count() > 300);
+        let settings = MapSettings::new(Form::Bounded, 16, [256, 256]);
+        let map = TransmittanceMap::new(gpu(), settings, &fitted).unwrap();
+        let one = ParticleBuffer::new(gpu(), &Particles::default()).unwrap();
+        let refused = SplatFixed::new(gpu(), shaders(), settings).unwrap().bind(gpu(), &map, &one);
+        assert!(matches!(refused, Err(TransmittanceError::Leaning)));
+        let voxels = Voxels::new(gpu(), shaders(), settings, Reading::Linear).unwrap();
+        let uploaded = VolumeTexture::new(gpu(), &volume, 1.0, Reading::Linear).unwrap();
+        let mut encoder = gpu().encoder();
+        voxels.record(&mut encoder, &voxels.bind(gpu(), &map, &uploaded).unwrap());
+        gpu().submit(encoder).unwrap();
+        let found = ask(&map, false, &points);
+        let error = |i: usize| (marched(&volume, points[i], fitted.direction) - f64::from(found[i])).abs();
+        let errors = parallel::rows(points.len(), error);
+        hold(&format!("{name}, mean"), errors.iter().sum::<f64>() / points.len() as f64, 2e-3);
+        hold(&format!("{name}, greatest"), errors.iter().fold(0.0, |a: f64, b| a.max(*b)), 0.03);
+    }
+}
+
+/// A ball in a map that is as large as it: its chord in closed form before, in and behind it.
+#[test]
+fn a_ball_in_a_fitted_map_is_its_chord() {
+    let _turn = gpu::turn();
+    let balls = [Particle { position: Vec3::new(1.0, 2.0, -1.0), radius: 0.5, extinction: 1.6 }];
+    let particles = Particles { list: balls.to_vec() };
+    let light =
+        Light::directional_around_balls(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, particles.balls()).unwrap();
+    let settings = MapSettings::new(Form::Bounded, 16, [255, 255]);
+    let map = TransmittanceMap::new(gpu(), settings, &light).unwrap();
+    let buffer = ParticleBuffer::new(gpu(), &particles).unwrap();
+    let splat = SplatFixed::new(gpu(), shaders(), settings).unwrap();
+    let mut encoder = gpu().encoder();
+    splat.record(&mut encoder, &splat.bind(gpu(), &map, &buffer).unwrap()).unwrap();
+    gpu().submit(encoder).unwrap();
+    // Away from the light through the middle, which is that of a texel: 3 m before it to 3 m behind it.
+    let along = |i: i32| 0.1 * i as f32 - 3.0;
+    let points: Vec<Vec3> = (0..=60).map(|i| balls[0].position - along(i) * light.direction).collect();
+    for (i, found) in ask(&map, false, &points).into_iter().enumerate() {
+        let passed = f64::from(along(i as i32) + 0.5).clamp(0.0, 1.0);
+        let error = (f64::from(found) - (-1.6 * passed).exp()).abs();
+        assert!(error < 2e-4, "{passed}: {error}");
     }
 }
 

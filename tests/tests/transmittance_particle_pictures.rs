@@ -79,6 +79,37 @@ fn particles_are_blended_as_in_f64_in_any_order() {
     }
 }
 
+#[test]
+fn the_reference_sums_over_all_particles() {
+    let _turn = gpu::turn();
+    let mut particles = burst(400, 5);
+    particles.list.iter_mut().for_each(|particle| particle.radius = particle.radius.max(0.15));
+    let balls = balls(&particles);
+    let view = perspective(Vec3::new(2.0, 1.5, 5.0), DepthRange::Forward);
+    let setting = particles_setting(&particles, &view);
+    let (picture, lit) = setting.summed(&particles);
+    let exact = setting.reference(|view| view.at_middles(&balls));
+    let worst = exact.iter().zip(&lit).map(|(a, b)| (a - f64::from(*b)).abs()).fold(0.0, f64::max);
+    hold("summed, greatest", worst, 1e-5);
+    assert!(exact.iter().filter(|t| **t < 0.5).count() > 50);
+    let (radiance, _) = split(&picture);
+    let (truth, _) = split(&setting.reference(|view| view.blended(&balls, &exact)));
+    hold("summed and blended", relative_rmse(&radiance, &truth), 0.002);
+    // What is dropped dims nothing, and one alone is dimmed by its own half.
+    let mut wild = particles.clone();
+    let at = Particle { position: Vec3::ZERO, radius: 0.3, extinction: 2.0 };
+    wild.list.insert(20, Particle { position: Vec3::new(f32::NAN, 0.0, 0.0), ..at });
+    wild.list.insert(0, Particle { extinction: -1.0, ..at });
+    wild.list.push(Particle { radius: f32::INFINITY, ..at });
+    wild.list.push(Particle { position: Vec3::new(0.0, 1e30, 0.0), ..at });
+    let (same, with_dropped) = setting.summed(&wild);
+    assert_eq!(same, picture);
+    assert_eq!(with_dropped.iter().filter(|t| **t == -1.0).count(), 4);
+    let (_, alone) = setting.summed(&Particles { list: vec![at] });
+    assert!((alone[0] - (-0.6_f32).exp()).abs() < 1e-6, "{}", alone[0]);
+    assert!(setting.summed(&Particles::default()).1.is_empty());
+}
+
 /// Balls far below a pixel are widened: what they send in all stays.
 #[test]
 fn the_smallest_particles_keep_what_they_send() {

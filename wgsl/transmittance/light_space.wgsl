@@ -4,7 +4,8 @@
 // source: core/light for the clip space of a directional light.
 // note: The map covers the clip space of a directional light's shadow map, whichever way depth runs in it. Depth is
 // note: 0 on the near side of the range, 1 on the far side; the range d in metres is known from the matrix, and only
-// note: what builds a map needs it. At every depth the medium before the range is not known, and counts as clear.
+// note: what builds a map needs it. For volumes the near and far sides may lean, so that the range is short for a medium
+// note: that stands askew to the light; particles want them across the light. At every depth the medium before the range is not known, and counts as clear.
 
 #import airlight::core::light::{Light, shadow_position, shadow_point}
 
@@ -29,7 +30,7 @@ fn map_range(light: Light) -> f32 {
     return length(light.world_from_clip[2].xyz);
 }
 
-/// Texels to the metre, across and down the map.
+/// Texels to the metre, across and down the map, whose sides lie across the light.
 fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
     let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
     return 0.5 * size / max(across, vec2<f32>(1e-12));

@@ -106,3 +106,14 @@ fn stretch_of_ball(ball: Ball, texels: vec2<f32>) -> Stretch {
     let kept = (ends - begins) / max(2.0 * half, 1e-12);
     return Stretch(0.5 * (begins + ends), 0.5 * (ends - begins), ball.optical_depth * chord * clamp(kept, 0.0, 1.0));
 }
+
+/// Optical depth of the part of a ray from `point` on, metres in the world, that lies in the ball, without widening it.
+/// `direction`: unit vector TOWARDS the light.
+fn optical_depth_towards(particle: Particle, point: vec3<f32>, direction: vec3<f32>) -> f32 {
+    let between = particle.position - point;
+    let along = dot(between, direction);
+    let off = (between - along * direction) / max(particle.radius, 1e-15);
+    let half = particle.radius * sqrt(max(1.0 - dot(off, off), 0.0));
+    let passed = max(along + half, 0.0) - max(along - half, 0.0);
+    return min(particle.extinction * passed, GREATEST_DEPTH);
+}

@@ -152,6 +152,7 @@ impl From<TransmittanceError> for CommandError {
             E::Size { .. }
             | E::Lighting { .. }
             | E::Range(_)
+            | E::Leaning
             | E::OtherMap { .. }
             | E::Reference(_)
             | E::Pass(_) => {
@@ -177,7 +178,9 @@ impl From<StageError> for CommandError {
                 Self::misuse(flag, error)
             }
             StageError::Light(error) => match error {
-                LightError::Scene { .. } | LightError::Range { .. } => Self::failure(error),
+                LightError::Scene { .. } | LightError::Points | LightError::Range { .. } => {
+                    Self::failure(error)
+                }
                 LightError::Cascades(_)
                 | LightError::CascadesOfLocal
                 | LightError::Split(_)

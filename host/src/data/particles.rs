@@ -26,11 +26,16 @@ pub struct Particles {
 impl Particles {
     /// The box around all finite particles, metres; none where there are none.
     pub fn bounds(&self) -> Option<Bounds> {
-        let finite = self.list.iter().filter(|p| p.position.is_finite() && p.radius.is_finite());
-        finite.fold(None, |bounds: Option<Bounds>, particle| {
-            let (min, max) = (particle.position - particle.radius, particle.position + particle.radius);
+        self.balls().fold(None, |bounds: Option<Bounds>, (middle, radius)| {
+            let (min, max) = (middle - radius, middle + radius);
             Some(bounds.map_or(Bounds { min, max }, |b| Bounds { min: b.min.min(min), max: b.max.max(max) }))
         })
+    }
+
+    /// Middles and radii of all finite particles, metres: what [`crate::core::Light::directional_around_balls`] fits a map to.
+    pub fn balls(&self) -> impl Iterator<Item = (Vec3, f32)> {
+        let finite = self.list.iter().filter(|p| p.position.is_finite() && p.radius.is_finite());
+        finite.map(|particle| (particle.position, particle.radius))
     }
 
     /// As the shaders take them: 32 bytes each.

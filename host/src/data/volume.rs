@@ -63,12 +63,49 @@ impl Volume {
         )
     }
 
+    /// Points in the world, metres, whose convex hull just holds all voxels with extinction and what is read between them and
+    /// their neighbours: what [`crate::core::Light::directional_leaning`] fits a map to. Of a volume without extinction the corners
+    /// of the box around it.
+    pub fn occupied_points(&self) -> Vec<Vec3> {
+        let [width, height, slices] = self.size.map(|side| side as usize);
+        // Along each line of corners of voxels, in halves of a voxel, how far occupied ones reach.
+        let mut reached = vec![(u32::MAX, 0_u32); (2 * height + 1) * (2 * slices + 1)];
+        let occupied = |value: &f32| value.is_finite() && *value > 0.0;
+        for (row, values) in self.values.chunks_exact(width).enumerate() {
+            let Some(first) = values.iter().position(occupied) else { continue };
+            let last = values.iter().rposition(occupied).unwrap_or(first);
+            let ([low, high], [bottom, top], [near, far]) = (
+                spread([first, last], width),
+                spread([row % height; 2], height),
+                spread([row / height; 2], slices),
+            );
+            for (y, z) in [(bottom, near), (bottom, far), (top, near), (top, far)] {
+                let line = &mut reached[z * (2 * height + 1) + y];
+                *line = (line.0.min(low as u32), line.1.max(high as u32));
+            }
+        }
+        let sides = 2.0 * Vec3::from(self.size.map(|side| side as f32));
+        let ends = reached.iter().enumerate().filter(|(_, (low, high))| low <= high).flat_map(
+            |(line, (low, high))| {
+                let (y, z) = (line % (2 * height + 1), line / (2 * height + 1));
+                [low, high].map(|x| Vec3::new(*x as f32, y as f32, z as f32) / sides)
+            },
+        );
+        let points: Vec<Vec3> = ends.map(|unit| self.world_from_unit.transform_point3(unit)).collect();
+        if points.is_empty() { self.bounds().corners().to_vec() } else { points }
+    }
+
     /// The shortest side of a voxel, metres.
     pub fn voxel(&self) -> f32 {
         let sides = [self.world_from_unit.x_axis, self.world_from_unit.y_axis, self.world_from_unit.z_axis];
         let voxel = |axis: usize| sides[axis].length() / self.size[axis] as f32;
         voxel(0).min(voxel(1)).min(voxel(2))
     }
+}
+
+/// From where to where voxels `first` to `last` of `side` are read, in halves of a voxel.
+fn spread([first, last]: [usize; 2], side: usize) -> [usize; 2] {
+    [(2 * first).saturating_sub(1), (2 * last + 3).min(2 * side)]
 }
 
 /// A volume from a function of places in the box 0..1, which reaches from `min` to `max` in the world.
@@ -147,6 +184,40 @@ mod tests {
         for flat in [Mat4::from_scale(Vec3::new(1.0, 0.0, 1.0)), Mat4::from_scale(Vec3::splat(f32::NAN))] {
             assert_eq!(Volume::new([1, 1, 1], vec![0.0], flat), Err(VolumeError::Space));
         }
+    }
+
+    /// Of random voxels: all that is read between them lies on the inner side of planes of any direction, and touches them.
+    #[test]
+    fn occupied_points_span_what_is_read_of_occupied_voxels() {
+        let mut random = crate::data::Random::new(3);
+        let size = [7, 5, 6];
+        let space = Mat4::from_rotation_y(0.4) * Mat4::from_scale(Vec3::new(3.0, 2.0, 4.0));
+        for chance in [0.01, 0.05, 0.5] {
+            let value = |_| if random.unit() < chance { 0.5 } else { [0.0, -1.0, f32::NAN][random.below(3)] };
+            let mut values: Vec<f32> = (0..210).map(value).collect();
+            values[100] = 1.0;
+            let volume = Volume::new(size, values, space).expect("a volume");
+            let points = volume.occupied_points();
+            for _ in 0..20 {
+                let axis = random.direction();
+                let reached = points.iter().map(|point| axis.dot(*point)).fold(f32::NEG_INFINITY, f32::max);
+                let mut needed = f32::NEG_INFINITY;
+                for (i, _) in volume.values.iter().enumerate().filter(|(_, value)| **value > 0.0) {
+                    for corner in 0..8_usize {
+                        let voxel = [i % 7, i / 7 % 5, i / 35];
+                        let unit = [0, 1, 2].map(|a| {
+                            let side = size[a] as f32;
+                            let away = if corner >> a & 1 == 1 { 1.5 } else { -0.5 };
+                            ((voxel[a] as f32 + away) / side).clamp(0.0, 1.0)
+                        });
+                        needed = needed.max(axis.dot(space.transform_point3(Vec3::from(unit))));
+                    }
+                }
+                assert!((reached - needed).abs() < 1e-5, "{reached} of {needed}");
+            }
+        }
+        let empty = Volume::new([2, 2, 2], vec![0.0; 8], space).expect("a volume");
+        assert_eq!(empty.occupied_points(), empty.bounds().corners());
     }
 
     #[test]

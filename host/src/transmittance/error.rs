@@ -39,6 +39,11 @@ pub enum TransmittanceError {
         "the light's map reaches {0} m along the light: a directional light is needed, and a range that is positive and finite"
     )]
     Range(f32),
+    /// Particles in a map whose sides lean.
+    #[error(
+        "particles want a map whose near and far side lie across the light: fit it by `Light::directional_around_balls`"
+    )]
+    Leaning,
     /// A map of another kind.
     #[error("a {given:?} map was bound to passes for {expected:?}: build them with the same settings")]
     OtherMap {

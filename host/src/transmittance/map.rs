@@ -18,6 +18,7 @@ pub struct TransmittanceMap {
     /// Least and greatest occupied depth, 0..1, of each texel; of [`Form::Bounded`] only.
     pub intervals: Option<Texture>,
     sampler: Sampler,
+    leaning: bool,
 }
 
 impl TransmittanceMap {
@@ -38,8 +39,11 @@ impl TransmittanceMap {
         let coefficients = Texture::array(gpu, [width, height, settings.layers()], settings.format(), usage);
         let intervals = (settings.form == Form::Bounded)
             .then(|| Texture::storage(gpu, settings.size, wgpu::TextureFormat::Rg32Float));
+        let across = [light.world_from_clip.x_axis, light.world_from_clip.y_axis];
+        let along = |axis: glam::Vec4| axis.truncate().normalize_or_zero().dot(light.direction).abs();
+        let leaning = across.into_iter().any(|axis| along(axis) > 1e-3);
         let (light, sampler) = (Buffer::uniform(gpu, light), Sampler::linear(gpu));
-        Ok(Self { settings, light, coefficients, intervals, sampler })
+        Ok(Self { settings, light, coefficients, intervals, sampler, leaning })
     }
 
     /// What passes bind of it.
@@ -58,6 +62,10 @@ impl TransmittanceMap {
     /// Bytes of its textures.
     pub fn memory(&self) -> u64 {
         self.coefficients.memory() + self.intervals.as_ref().map_or(0, Texture::memory)
+    }
+
+    pub(super) fn check_particles(&self) -> Result<(), TransmittanceError> {
+        if self.leaning { Err(TransmittanceError::Leaning) } else { Ok(()) }
     }
 
     pub(super) fn check(&self, expected: MapSettings) -> Result<(), TransmittanceError> {

@@ -5,9 +5,10 @@ use super::particles::groups;
 use super::{MapSettings, MediumView, ParticleBuffer, TransmittanceError, TransmittanceMap};
 use crate::core::Sort;
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, RenderStages};
+use crate::pass::{Bound, Pass, RenderStages, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
+use airlight_validate::Definitions;
 
 /// Radiance and transmittance of what is drawn before what is there.
 const OVER: wgpu::BlendState = wgpu::BlendState {
@@ -23,12 +24,12 @@ const OVER: wgpu::BlendState = wgpu::BlendState {
     },
 };
 
-/// Lights particles through a map, sorts them back to front and blends them, all on the GPU.
+/// Lights particles through a map, or by the sum over all of them, sorts them back to front and blends them, all on the GPU.
 pub struct ParticlePicture {
     light: Pass,
     sort: Sort,
     render: Pass,
-    settings: MapSettings,
+    settings: Option<MapSettings>,
 }
 
 /// What particles are seen with, bound.
@@ -46,6 +47,9 @@ pub struct ParticlePictureBound {
 }
 
 impl ParticlePicture {
+    /// Columns and rows by which the reference tells which particles lie outside: those that a fine map would drop.
+    pub const REFERENCE_SIZE: [u32; 2] = [4096, 4096];
+
     /// Builds the passes for maps of `settings`. `monotone`: extinction maps with the Fejér window.
     ///
     /// # Errors
@@ -58,6 +62,24 @@ impl ParticlePicture {
     ) -> Result<Self, TransmittanceError> {
         settings.check(gpu)?;
         let definitions = settings.lighting_definitions(monotone);
+        Self::with(gpu, shaders, Some(settings), definitions)
+    }
+
+    /// Builds the passes without a map: the reference, which sums the optical depths of all particles towards the light for each.
+    /// Its cost grows with the square of their number.
+    ///
+    /// # Errors
+    /// [`TransmittanceError`].
+    pub fn reference(gpu: &Gpu, shaders: &Shaders) -> Result<Self, TransmittanceError> {
+        Self::with(gpu, shaders, None, Definitions::new().flag("REFERENCE"))
+    }
+
+    fn with(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        settings: Option<MapSettings>,
+        definitions: Definitions,
+    ) -> Result<Self, TransmittanceError> {
         let light = Pass::compute_with(gpu, shaders, "transmittance/light_particles", &definitions)?;
         let composed = shaders
             .compose("transmittance/render_particles", "default")
@@ -77,7 +99,7 @@ impl ParticlePicture {
     /// Binds a map of the particles, and the particles.
     ///
     /// # Errors
-    /// [`TransmittanceError`].
+    /// [`TransmittanceError`], also for passes that were built as the reference.
     pub fn bind(
         &self,
         gpu: &Gpu,
@@ -85,11 +107,39 @@ impl ParticlePicture {
         map: &TransmittanceMap,
         particles: &ParticleBuffer,
     ) -> Result<ParticlePictureBound, TransmittanceError> {
-        map.check(self.settings)?;
-        let splat = particles.target(gpu, self.settings.size);
+        map.check(self.settings.ok_or(TransmittanceError::Reference("takes no map"))?)?;
+        map.check_particles()?;
+        self.bind_light(gpu, view, (map.resources(), &map.light), map.settings.size, particles)
+    }
+
+    /// Binds the uniform of a directional light alone, fitted to the particles, for the reference.
+    ///
+    /// # Errors
+    /// [`TransmittanceError`], also for passes that were built for maps.
+    pub fn bind_reference(
+        &self,
+        gpu: &Gpu,
+        view: &MediumView<'_>,
+        light: &Buffer,
+        particles: &ParticleBuffer,
+    ) -> Result<ParticlePictureBound, TransmittanceError> {
+        if self.settings.is_some() {
+            return Err(TransmittanceError::Reference("was not built: this pass takes a map"));
+        }
+        self.bind_light(gpu, view, (vec![("light", light.into())], light), Self::REFERENCE_SIZE, particles)
+    }
+
+    fn bind_light<'a>(
+        &'a self,
+        gpu: &Gpu,
+        view: &MediumView<'a>,
+        (mut resources, of): (Vec<(&'static str, Resource<'a>)>, &'a Buffer),
+        size: [u32; 2],
+        particles: &'a ParticleBuffer,
+    ) -> Result<ParticlePictureBound, TransmittanceError> {
+        let splat = particles.target(gpu, size);
         let [keys, order, transmittances] =
             [0; 3].map(|_| Buffer::storage(gpu, 4 * u64::from(particles.count)));
-        let mut resources = map.resources();
         resources.extend([
             ("camera", view.camera.into()),
             ("splat", (&splat).into()),
@@ -101,7 +151,7 @@ impl ParticlePicture {
         let light = self.light.bind_known(gpu, &resources)?;
         let resources = [
             ("camera", view.camera.into()),
-            ("light", (&map.light).into()),
+            ("light", of.into()),
             ("lighting", view.lighting.into()),
             ("particles", (&particles.particles).into()),
             ("order", (&order).into()),
@@ -125,6 +175,9 @@ impl ParticlePicture {
     ) -> Result<(), TransmittanceError> {
         let invocations = groups(bound.count.div_ceil(64));
         self.light.dispatch_groups(encoder, &bound.light, "light_particles", invocations)?;
+        if self.settings.is_none() {
+            self.light.dispatch_groups(encoder, &bound.light, "sum_particles", invocations)?;
+        }
         self.sort.record(gpu, encoder, [&bound.keys, &bound.order], bound.count, 32)?;
         let clear = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
         let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };

@@ -135,9 +135,24 @@ impl CheckParticles {
         map: &TransmittanceMap,
         particles: &ParticleBuffer,
     ) -> Result<Bound, TransmittanceError> {
-        let splat = particles.target(gpu, map.settings.size);
+        map.check_particles()?;
+        self.bind_light(gpu, &map.light, map.settings.size, particles)
+    }
+
+    /// Binds the uniform of a directional light and the size of a map that there need not be, and particles.
+    ///
+    /// # Errors
+    /// [`TransmittanceError`].
+    pub fn bind_light(
+        &self,
+        gpu: &Gpu,
+        light: &Buffer,
+        size: [u32; 2],
+        particles: &ParticleBuffer,
+    ) -> Result<Bound, TransmittanceError> {
+        let splat = particles.target(gpu, size);
         let resources = [
-            ("light", (&map.light).into()),
+            ("light", light.into()),
             ("splat", (&splat).into()),
             ("particles", (&particles.particles).into()),
             ("counts", (&particles.counts).into()),

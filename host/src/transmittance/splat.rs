@@ -55,6 +55,7 @@ impl Splat {
         particles: &ParticleBuffer,
     ) -> Result<Bound, TransmittanceError> {
         map.check(self.settings)?;
+        map.check_particles()?;
         let splat = particles.target(gpu, self.settings.size);
         let resources = [
             ("light", (&map.light).into()),

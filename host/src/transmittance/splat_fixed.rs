@@ -60,6 +60,7 @@ impl SplatFixed {
         particles: &ParticleBuffer,
     ) -> Result<SplatFixedBound, TransmittanceError> {
         map.check(self.settings)?;
+        map.check_particles()?;
         let splat = particles.target(gpu, self.settings.size);
         let sums = Buffer::storage(gpu, Self::bytes(self.settings));
         let [width, height] = self.settings.size.map(u64::from);

@@ -94,6 +94,22 @@ impl Setting {
         })
     }
 
+    /// The particles without a map, by the reference that the shader has, and the transmittances at their middles.
+    pub fn summed(&self, particles: &Particles) -> (Vec<f32>, Vec<f32>) {
+        let buffer = ParticleBuffer::new(gpu(), particles).unwrap();
+        let light = Buffer::uniform(gpu(), &self.light);
+        self.with(|view| {
+            let pass = ParticlePicture::reference(gpu(), shaders()).unwrap();
+            let bound = pass.bind_reference(gpu(), view, &light, &buffer).unwrap();
+            let mut encoder = gpu().encoder();
+            pass.record(gpu(), &mut encoder, &bound).unwrap();
+            gpu().submit(encoder).unwrap();
+            let mut lit = bound.transmittances.read_floats(gpu()).unwrap();
+            lit.truncate(particles.list.len());
+            (bound.picture.read(gpu()).unwrap(), lit)
+        })
+    }
+
     /// The same in f64.
     pub fn reference<T>(&self, of: impl FnOnce(&ReferenceView<'_>) -> T) -> T {
         let far = f64::from(self.camera.far_depth);

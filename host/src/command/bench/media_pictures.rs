@@ -49,8 +49,7 @@ impl Medium {
         towards: Vec3,
         size: [u32; 2],
     ) -> Result<Self, CommandError> {
-        let bounds = volume.bounds();
-        let light = Light::directional(towards, Vec3::new(3.0, 2.5, 2.0), bounds.min, bounds.max)
+        let light = Light::directional_leaning(towards, Vec3::new(3.0, 2.5, 2.0), volume.occupied_points())
             .map_err(CommandError::failure)?;
         let lighting =
             MediumLighting::new(Vec3::new(0.95, 0.9, 0.8), 0.4, 100.0).map_err(CommandError::failure)?;
@@ -276,8 +275,7 @@ pub fn plume_errors(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandErr
     const WAY: f64 = 8.0;
     let mut volume = plume([32, 80, 32], 9);
     volume.world_from_unit = Mat4::from_rotation_y(0.6) * volume.world_from_unit;
-    let bounds = volume.bounds();
-    let light = Light::directional(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, bounds.min, bounds.max)
+    let light = Light::directional_leaning(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, volume.occupied_points())
         .map_err(CommandError::failure)?;
     let grid = grid(&volume)?;
     let wide = |v: Vec3| linear::Vec3::from(v.to_array());

@@ -95,8 +95,7 @@ fn errors(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
 /// Cost of building from voxels, by form.
 fn builds(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let volume = plume([64, 160, 64], 9);
-    let bounds = volume.bounds();
-    let light = Light::directional(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, bounds.min, bounds.max)
+    let light = Light::directional_leaning(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, volume.occupied_points())
         .map_err(CommandError::failure)?;
     let uploaded = media_pictures::uploaded(gpu, shaders, &volume)?;
     let forms = [(Form::Extinction, 4), (Form::Function, 4), (Form::Bounded, 4), (Form::Extinction, 16)];

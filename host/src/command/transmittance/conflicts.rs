@@ -2,12 +2,15 @@
 //! What cannot be meant with `airlight transmittance`, before any file is read.
 
 use super::flags::{FormatSpelling, MapSpelling, Options, Source, SplatSpelling};
+use super::medium::{Matter, Medium};
 use crate::command::CommandError;
-use crate::command::parse::LightSpelling;
+use crate::command::parse::{LightSpelling, Projection};
 use crate::transmittance::Form;
 
 /// Most pixels a side.
 const MOST: u32 = 8192;
+/// Most particles that the reference takes: seconds of a fast device, which gives up on longer work.
+const MOST_SUMMED: usize = 200_000;
 
 /// Checks what the flags alone say.
 ///
@@ -15,7 +18,7 @@ const MOST: u32 = 8192;
 /// Misuse: a value, or two flags that cannot be meant together.
 pub fn check(flags: &Options) -> Result<(), CommandError> {
     let refuse = |flag: &str, problem: String| Err(CommandError::misuse(flag, problem));
-    let rules = map(flags).into_iter().chain(medium(flags));
+    let rules = map(flags).into_iter().chain(medium(flags)).chain(camera(flags));
     for (refused, flag, problem) in rules {
         if refused {
             return refuse(flag, problem.to_owned());
@@ -56,6 +59,25 @@ pub fn check(flags: &Options) -> Result<(), CommandError> {
     Ok(())
 }
 
+/// Checks what flags say of a medium that was read.
+///
+/// # Errors
+/// Misuse: more particles than the reference takes.
+pub fn check_medium(flags: &Options, medium: &Medium) -> Result<(), CommandError> {
+    match &medium.matter {
+        Matter::Particles(particles, _)
+            if flags.map == MapSpelling::Reference && particles.list.len() > MOST_SUMMED =>
+        {
+            let problem = format!(
+                "`reference` sums over all particles for each: {} are more than {MOST_SUMMED}, take bounded",
+                particles.list.len()
+            );
+            Err(CommandError::misuse("--map", problem))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Whether it is broken, the flag, the problem.
 type Rule = (bool, &'static str, &'static str);
 
@@ -71,14 +93,10 @@ fn map(flags: &Options) -> Vec<Rule> {
             "--map",
             "`tfm` holds transmittance, which particles cannot add up to: take bounded or etm, or a --volume",
         ),
-        (
-            particles && reference,
-            "--map",
-            "`reference` marches through a --volume: take bounded for particles, whose error is least",
-        ),
         (reference && flags.coefficients.is_some(), "--coefficients", NO_MAP),
         (reference && flags.map_size.is_some(), "--map-size", NO_MAP),
         (reference && flags.format.is_some(), "--format", NO_MAP),
+        (reference && flags.splat.is_some(), "--splat", NO_MAP),
         (
             flags.monotone && !matches!(flags.map, MapSpelling::Etm | MapSpelling::Bounded),
             "--monotone",
@@ -104,6 +122,22 @@ fn map(flags: &Options) -> Vec<Rule> {
             !matches!(flags.light, LightSpelling::Directional { .. }),
             "--light",
             "only a directional light has transmittance maps: take directional:AZ,EL",
+        ),
+    ]
+}
+
+fn camera(flags: &Options) -> Vec<Rule> {
+    let orthographic = flags.camera == Projection::Orthographic;
+    vec![
+        (
+            orthographic && flags.fov.is_some(),
+            "--fov",
+            "an orthographic camera has no field of view: give --height",
+        ),
+        (
+            !orthographic && flags.height.is_some(),
+            "--height",
+            "a perspective camera has none: give --fov, or --camera orthographic",
         ),
     ]
 }

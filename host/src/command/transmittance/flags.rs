@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The flags of `airlight transmittance`.
 
-use crate::command::parse::{self, LightSpelling};
+use crate::command::parse::{self, LightSpelling, Projection};
 use crate::core::Reading;
 use crate::transmittance::{Form, MapSettings, Precision};
 use clap::ValueEnum;
@@ -25,7 +25,7 @@ pub enum MapSpelling {
     Moments,
     /// Two trigonometric moments.
     Trigonometric,
-    /// No map: a march to the light from every step; volumes only.
+    /// No map: a march to the light from every step of a view ray, or for each particle the sum over all of them.
     Reference,
 }
 
@@ -145,15 +145,21 @@ pub struct Options {
     /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
     #[arg(long, value_name = "G", default_value = "0.2", value_parser = parse::number, allow_hyphen_values = true)]
     pub g: f32,
+    /// How view rays run.
+    #[arg(long, value_enum, default_value = "perspective")]
+    pub camera: Projection,
     /// Position of the eye, metres [default: frames the medium].
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
     pub eye: Option<Vec3>,
     /// Point in the middle of the picture, metres [default: centre of the medium].
     #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
     pub target: Option<Vec3>,
-    /// Vertical field of view, degrees.
-    #[arg(long, value_name = "DEG", default_value = "35", value_parser = parse::number, allow_hyphen_values = true)]
-    pub fov: f32,
+    /// Vertical field of view of a perspective camera, degrees [default: 35].
+    #[arg(long, value_name = "DEG", value_parser = parse::number, allow_hyphen_values = true)]
+    pub fov: Option<f32>,
+    /// Height of the picture of an orthographic camera, metres [default: frames the medium].
+    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true)]
+    pub height: Option<f32>,
     /// Linear RGB radiance behind the medium, one number or R,G,B [default: a sky].
     #[arg(long, value_name = "A|R,G,B", value_parser = grey_or_colour, allow_hyphen_values = true)]
     pub background: Option<Vec3>,

@@ -2,7 +2,9 @@
 //! What is seen: a volume or particles, read or made, without what cannot be drawn.
 
 use super::flags::{Options, Source};
+use crate::Lighting;
 use crate::command::CommandError;
+use crate::core::{Light, LightError};
 use crate::data::{
     Bounds, MediumFileError, Particles, Volume, burst, cloud, load_particles, load_volume, plume,
 };
@@ -26,6 +28,8 @@ pub struct Medium {
     pub bounds: Bounds,
     /// What the camera is to see.
     pub framed: Bounds,
+    /// The box of the map was given.
+    pub boxed: bool,
     /// What is to be said of it, a line each.
     pub report: Vec<String>,
 }
@@ -77,6 +81,22 @@ impl Medium {
         }
     }
 
+    /// The light, fitted to the medium; to the box of the map where one was given.
+    ///
+    /// # Errors
+    /// [`LightError`].
+    pub fn light(&self, light: Lighting) -> Result<Light, LightError> {
+        match (light, &self.matter) {
+            (Lighting::Directional { towards, radiance }, Matter::Volume(volume, _)) => {
+                Light::directional_leaning(towards, radiance, volume.occupied_points())
+            }
+            (Lighting::Directional { towards, radiance }, Matter::Particles(particles, _)) if !self.boxed => {
+                Light::directional_around_balls(towards, radiance, particles.balls())
+            }
+            _ => light.fitted(&self.bounds),
+        }
+    }
+
     fn of_volume(mut volume: Volume, threshold: f32, scale: Option<f32>) -> Result<Self, String> {
         let bad = volume.values.iter().filter(|value| !value.is_finite()).count();
         let below = volume.values.iter().filter(|value| **value < 0.0).count();
@@ -98,7 +118,7 @@ impl Medium {
         }
         let (bounds, framed) = (occupied(&volume, 0.0), occupied(&volume, SEEN));
         let extinction = (scale * greatest).min(f32::MAX);
-        Ok(Self { matter: Matter::Volume(volume, extinction), bounds, framed, report })
+        Ok(Self { matter: Matter::Volume(volume, extinction), bounds, framed, boxed: false, report })
     }
 
     fn of_particles(particles: Particles, flags: &Options) -> Result<Self, String> {
@@ -114,7 +134,8 @@ impl Medium {
             .for_each(|particle| particle.extinction = (particle.extinction * scale).min(1e6));
         let own = kept.bounds().unwrap_or(Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE });
         let bounds = flags.bounds.map_or(own, |[min, max]| Bounds { min, max });
-        Ok(Self { matter: Matter::Particles(kept, counts), bounds, framed: bounds, report: Vec::new() })
+        let (matter, boxed) = (Matter::Particles(kept, counts), flags.bounds.is_some());
+        Ok(Self { matter, bounds, framed: bounds, boxed, report: Vec::new() })
     }
 }
 
@@ -250,7 +271,7 @@ mod tests {
         let space = glam::Mat4::from_scale(Vec3::splat(10.0));
         let volume = Volume { size: [10; 3], values, world_from_unit: space };
         let medium = Medium::of_volume(volume.clone(), 0.0, None);
-        let Ok(Medium { matter: Matter::Volume(clean, scale), bounds, framed, report }) = medium else {
+        let Ok(Medium { matter: Matter::Volume(clean, scale), bounds, framed, report, .. }) = medium else {
             panic!("no volume");
         };
         assert!((scale - 3.2).abs() < 1e-6 && clean.values[555] == 1.0 && clean.values[..2] == [0.0, 0.0]);

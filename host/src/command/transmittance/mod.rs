@@ -24,6 +24,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     let bar = progress::bar(3, quiet);
     bar.set_message("reading the medium");
     let medium = Medium::new(options)?;
+    conflicts::check_medium(options, &medium)?;
     let framing = Framing::new(options, &medium)?;
     bar.inc(1);
 

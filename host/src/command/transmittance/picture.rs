@@ -128,20 +128,29 @@ impl Studio<'_> {
         buffers: &mut Buffers,
     ) -> Result<(Texture, Vec<String>), CommandError> {
         let Self { gpu, shaders, flags, framing } = *self;
-        let settings = flags
-            .settings()
-            .ok_or_else(|| CommandError::misuse("--map", "particles need a map: take bounded"))?;
         let uploaded = ParticleBuffer::new(gpu, particles)?;
-        let map = TransmittanceMap::new(gpu, settings, &framing.light)?;
         let mut encoder = gpu.encoder();
         let check = CheckParticles::new(gpu, shaders)?;
-        check.record(&mut encoder, &check.bind(gpu, &map, &uploaded)?, &uploaded)?;
-        self.splat(&mut encoder, settings, &map, &uploaded)?;
-        let pass = ParticlePicture::new(gpu, shaders, settings, flags.monotone)?;
-        let bound = pass.bind(gpu, view, &map, &uploaded)?;
-        pass.record(gpu, &mut encoder, &bound)?;
-        gpu.submit(encoder)?;
-        self.map(&map, buffers)?;
+        let bound = if let Some(settings) = flags.settings() {
+            let map = TransmittanceMap::new(gpu, settings, &framing.light)?;
+            check.record(&mut encoder, &check.bind(gpu, &map, &uploaded)?, &uploaded)?;
+            self.splat(&mut encoder, settings, &map, &uploaded)?;
+            let pass = ParticlePicture::new(gpu, shaders, settings, flags.monotone)?;
+            let bound = pass.bind(gpu, view, &map, &uploaded)?;
+            pass.record(gpu, &mut encoder, &bound)?;
+            gpu.submit(encoder)?;
+            self.map(&map, buffers)?;
+            bound
+        } else {
+            let light = Buffer::uniform(gpu, &framing.light);
+            let checked = check.bind_light(gpu, &light, ParticlePicture::REFERENCE_SIZE, &uploaded)?;
+            check.record(&mut encoder, &checked, &uploaded)?;
+            let pass = ParticlePicture::reference(gpu, shaders)?;
+            let bound = pass.bind_reference(gpu, view, &light, &uploaded)?;
+            pass.record(gpu, &mut encoder, &bound)?;
+            gpu.submit(encoder)?;
+            bound
+        };
         let mut counts = uploaded.read_counts(gpu)?;
         if counts.overflows > 0 {
             return Err(CommandError::failure(format!(

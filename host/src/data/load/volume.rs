@@ -7,7 +7,7 @@ use crate::data::Volume;
 use crate::formats::read_npy;
 use glam::{Mat4, Vec3};
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufRead, BufReader};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -24,9 +24,7 @@ pub fn load_volume(path: impl AsRef<Path>, voxel: f32) -> Result<Volume, MediumF
     let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
     if name.ends_with(".nii") || name.ends_with(".nii.gz") {
         let file = File::open(path).map_err(|error| MediumFileError::io(path, error))?;
-        // The parser is not ours; a panic in it is a broken file like any other.
-        return catch_unwind(AssertUnwindSafe(|| nifti::load(path, BufReader::new(file))))
-            .unwrap_or_else(|_| Err(MediumFileError::broken(path, "its parser gave up")));
+        return image(path, BufReader::new(file));
     }
     if name.ends_with(".npy") {
         return array(path, voxel);
@@ -34,12 +32,18 @@ pub fn load_volume(path: impl AsRef<Path>, voxel: f32) -> Result<Volume, MediumF
     Err(MediumFileError::UnknownExtension { path: path.to_owned(), wanted: ".nii, .nii.gz or .npy" })
 }
 
-/// A volume from the bytes of a NIfTI file that is part of the program. `name` stands for its path in errors.
+/// A volume from the bytes of a NIfTI-1 file that is part of the program. `name` stands for its path in errors.
 ///
 /// # Errors
 /// As [`load_volume`].
 pub fn volume_from_bytes(name: &str, bytes: &[u8]) -> Result<Volume, MediumFileError> {
-    nifti::load(Path::new(name), bytes)
+    image(Path::new(name), bytes)
+}
+
+fn image(path: &Path, bytes: impl BufRead) -> Result<Volume, MediumFileError> {
+    // The parser is not ours; a panic in it is a broken file like any other.
+    catch_unwind(AssertUnwindSafe(|| nifti::load(path, bytes)))
+        .unwrap_or_else(|_| Err(MediumFileError::broken(path, "its parser gave up")))
 }
 
 fn array(path: &Path, voxel: f32) -> Result<Volume, MediumFileError> {

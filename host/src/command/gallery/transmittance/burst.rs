@@ -6,8 +6,8 @@ use super::super::studio::Studio;
 use super::setting::{Arrangement, Setting};
 use super::sky::Sky;
 use crate::command::CommandError;
-use crate::core::{DepthRange, PerspectiveView};
-use crate::data::{self, Bounds};
+use crate::core::{DepthRange, Light, PerspectiveView};
+use crate::data;
 use crate::transmittance::{
     Form, MapSettings, ParticleBuffer, ParticlePicture, SplatFixed, TransmittanceMap,
 };
@@ -31,8 +31,6 @@ const MAPS: [(Form, u32, bool, &str, &str); 6] = [
 pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let gpu = &studio.gpu;
     let particles = data::burst(COUNT, 12);
-    let nothing = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
-    let bounds = particles.bounds().unwrap_or(nothing);
     let arrangement = Arrangement {
         view: PerspectiveView {
             eye: Vec3::new(2.0, 1.2, 6.0),
@@ -54,7 +52,9 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         ground: None,
         exposure: 1.0,
     };
-    let setting = Setting::new(studio, &arrangement, bounds)?;
+    let setting = Setting::new(studio, &arrangement, |towards, radiance| {
+        Light::directional_around_balls(towards, radiance, particles.balls())
+    })?;
     let buffer = ParticleBuffer::new(gpu, &particles)?;
     let lit = |form, coefficients, light, splatted: bool| {
         let settings = MapSettings::new(form, coefficients, MAP);

@@ -3,6 +3,7 @@
 
 mod burst;
 mod curves;
+mod scans;
 mod setting;
 mod sky;
 mod volumes;
@@ -13,13 +14,14 @@ use crate::command::CommandError;
 use crate::transmittance::Form;
 
 /// Pictures of this system, as in `--only transmittance/NAME`.
-pub const NAMES: [&str; 4] = ["plume", "cloud", "curves", "burst"];
+pub const NAMES: [&str; 5] = ["plume", "cloud", "brain", "curves", "burst"];
 
 /// The section of a name; of the last one for a name that is not among [`NAMES`].
 pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, CommandError> {
     match name {
         "plume" => volumes::plume(studio, folder),
         "cloud" => volumes::cloud(studio, folder),
+        "brain" => scans::brain(studio, folder),
         "curves" => curves::section(studio, folder),
         _ => burst::section(studio, folder),
     }

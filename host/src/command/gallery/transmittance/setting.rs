@@ -4,8 +4,8 @@
 use super::super::studio::Studio;
 use super::sky::{Sky, directions};
 use crate::command::CommandError;
-use crate::core::{Bricks, Camera, Light, PerspectiveView, Reading, VolumeTexture};
-use crate::data::{Bounds, Volume};
+use crate::core::{Bricks, Camera, Light, LightError, PerspectiveView, Reading, VolumeTexture};
+use crate::data::Volume;
 use crate::transmittance::{
     Composite, MapSettings, MediumLighting, MediumView, Query, TransmittanceMap, VolumePicture, Voxels,
 };
@@ -48,12 +48,14 @@ pub struct Setting<'a> {
 }
 
 impl<'a> Setting<'a> {
-    /// Before empty space. `bounds`: of the medium, which maps hold.
-    pub fn new(studio: &'a Studio, of: &'a Arrangement, bounds: Bounds) -> Result<Self, CommandError> {
+    /// Before empty space. `fit`: the light of a direction and radiance, its map fitted to the medium.
+    pub fn new(
+        studio: &'a Studio,
+        of: &'a Arrangement,
+        fit: impl Fn(Vec3, Vec3) -> Result<Light, LightError>,
+    ) -> Result<Self, CommandError> {
         let camera = Camera::perspective(&of.view, studio.size).map_err(CommandError::failure)?;
-        let light = |(towards, radiance)| {
-            Light::directional(towards, radiance, bounds.min, bounds.max).map_err(CommandError::failure)
-        };
+        let light = |(towards, radiance)| fit(towards, radiance).map_err(CommandError::failure);
         let (albedo, g) = of.medium;
         let lighting = MediumLighting::new(albedo, g, 1000.0)?;
         let [width, height] = studio.size;

@@ -8,7 +8,7 @@ use super::setting::{Arrangement, Setting, build, upload};
 use super::sky::Sky;
 use super::{METHODS, Method};
 use crate::command::CommandError;
-use crate::core::{DepthRange, PerspectiveView};
+use crate::core::{DepthRange, Light, PerspectiveView};
 use crate::data::{self, Volume};
 use crate::transmittance::{Form, MapSettings, TransmittanceMap};
 use glam::Vec3;
@@ -26,8 +26,8 @@ pub fn plume(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let arrangement = Arrangement {
         view: PerspectiveView {
             eye: Vec3::new(0.8, 0.7, 7.4),
-            target: Vec3::new(0.8, 2.35, 0.0),
-            field_of_view: 40.0,
+            target: Vec3::new(0.8, 2.5, 0.0),
+            field_of_view: 44.0,
             near: 0.1,
             far: 1000.0,
             depth: DepthRange::Forward,
@@ -74,7 +74,8 @@ pub fn cloud(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     section(studio, folder, "A cloud", &arrangement, &volume, 1.2)
 }
 
-fn section(
+/// A volume by every method. `scale`: from its values to extinction in 1/m.
+pub fn section(
     studio: &Studio,
     folder: &str,
     title: &str,
@@ -82,7 +83,10 @@ fn section(
     volume: &Volume,
     scale: f32,
 ) -> Result<Section, CommandError> {
-    let setting = Setting::new(studio, arrangement, volume.bounds())?;
+    let points = volume.occupied_points();
+    let setting = Setting::new(studio, arrangement, |towards, radiance| {
+        Light::directional_leaning(towards, radiance, points.iter().copied())
+    })?;
     let uploaded = upload(studio, volume, scale)?;
     let fine = MapSettings::new(Form::Bounded, 16, MAP);
     let background = setting.background(&build(studio, fine, &setting.sun, &uploaded)?)?;

@@ -89,6 +89,12 @@ fn values_and_places_of_nifti_volumes() {
 fn what_is_shipped_is_read() {
     let head = load_volume(format!("{ASSETS}/head_mri.nii.gz"), 1.0).unwrap();
     assert_eq!(head.size, [161, 191, 151]);
+    assert_eq!(
+        volume_from_bytes("head", &std::fs::read(format!("{ASSETS}/head_mri.nii.gz")).unwrap()).unwrap(),
+        head
+    );
+    let broken = volume_from_bytes("head.nii", &[7; 400]).unwrap_err().to_string();
+    assert!(broken.contains("head.nii"), "{broken}");
     assert!(head.values.iter().all(|value| (0.0..=255.0).contains(value)));
     assert!(head.values.iter().filter(|value| **value > 50.0).count() > 500_000);
     let stent = load_volume(format!("{ASSETS}/stent_ct.nii.gz"), 1.0).unwrap();
