@@ -25,6 +25,7 @@ const COVERED: [(&str, &[&str]); 18] = [
         &[
             "harmonics_first",
             "harmonics_next",
+            "harmonics_sum",
             "cosine_orders",
             "cosine_basis",
             "cosine_integral",

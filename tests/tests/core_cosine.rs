@@ -90,6 +90,36 @@ fn bases_integrals_and_means_are_those_of_the_cosines() {
     }
 }
 
+/// Fifteen rotations, as many as a walk takes before it begins anew.
+#[test]
+fn harmonics_of_a_sum_of_depths_go_on_by_rotation() {
+    let probe = Probe {
+        head: "#import airlight::core::cosine_basis::{harmonics_first, harmonics_next, harmonics_sum}",
+        body: "var at = harmonics_first(input(0u));
+               let step = harmonics_first(input(1u));
+               for (var i = 0u; i < 15u; i++) { at = harmonics_sum(at, step); }
+               for (var g = 0u; g < 4u; g++) {
+                   for (var k = 0u; k < 4u; k++) {
+                       output(4u * g + k, at.cosine[k]); output(16u + 4u * g + k, at.sine[k]);
+                   }
+                   at = harmonics_next(at);
+               }",
+        inputs: 2,
+        outputs: 32,
+    };
+    let mut random = Random(23);
+    let records: Vec<f32> =
+        (0..2000).flat_map(|_| [random.unit() as f32, random.between(0.0, 0.06) as f32]).collect();
+    let found = probe.run(&records);
+    for j in 0..4 * GROUPS {
+        let angle = |r: &[f32]| j as f64 * PI * (f(r[0]) + 15.0 * f(r[1]));
+        let rows = || records.chunks_exact(2).zip(found.chunks_exact(32));
+        let budget = 2e-6 + 1.5e-6 * j as f64;
+        hold(&format!("cosine {j}"), worst(rows().map(|(r, v)| (f(v[j]), angle(r).cos()))), budget);
+        hold(&format!("sine {j}"), worst(rows().map(|(r, v)| (f(v[16 + j]), angle(r).sin()))), budget);
+    }
+}
+
 #[test]
 fn the_window_and_the_quotient_of_sine_and_angle() {
     let probe = Probe {

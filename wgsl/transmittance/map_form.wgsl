@@ -14,9 +14,11 @@
 #else ifdef TRIGONOMETRIC
 #import airlight::transmittance::transmittance_moments::trigonometric_layer
 #else
-#import airlight::core::cosine_basis::{Harmonics, harmonics_first, harmonics_next}
+#import airlight::core::cosine_basis::{
+    Harmonics, harmonics_first, harmonics_next, harmonics_sum, cosine_spread, ROOT_OF_TWO
+}
 #ifdef PERIODIC
-#import airlight::transmittance::opacity_map::{periods_first, opacity_coefficients}
+#import airlight::transmittance::opacity_map::{periods_first, period_spread, opacity_coefficients}
 #else
 #import airlight::transmittance::extinction_map::extinction_coefficients
 #endif
@@ -65,4 +67,104 @@ fn contribution(middle: f32, half: f32) -> Contribution {
     }
 #endif
     return all;
+}
+
+/// Even stretches one after the other along a light ray, each as long as the way from one middle to the next. Those of a series
+/// share all but the basis at their middles, which a rotation leads on: no sine a stretch.
+struct Walk {
+#ifdef POWER
+    /// Middle of the stretch, 0..1.
+    middle: f32,
+    /// From one middle to the next.
+    step: f32,
+#else ifdef TRIGONOMETRIC
+    /// Middle of the stretch, 0..1.
+    middle: f32,
+    /// From one middle to the next.
+    step: f32,
+#else
+    /// Harmonics of the middle of the stretch.
+    middle: Harmonics,
+    /// Of the way from one middle to the next.
+    step: Harmonics,
+#endif
+}
+
+/// A walk that begins at the stretch around `middle`; stretches are `step` long, 0..1. Rounding grows by about 1e-7 a stretch:
+/// begin anew every 16 of them or so.
+fn walk_from(middle: f32, step: f32) -> Walk {
+#ifdef POWER
+    return Walk(middle, step);
+#else ifdef TRIGONOMETRIC
+    return Walk(middle, step);
+#else ifdef PERIODIC
+    return Walk(periods_first(middle), periods_first(step));
+#else
+    return Walk(harmonics_first(middle), harmonics_first(step));
+#endif
+}
+
+/// At the next stretch.
+fn walk_on(walk: Walk) -> Walk {
+#ifdef POWER
+    return Walk(walk.middle + walk.step, walk.step);
+#else ifdef TRIGONOMETRIC
+    return Walk(walk.middle + walk.step, walk.step);
+#else
+    return Walk(harmonics_sum(walk.middle, walk.step), walk.step);
+#endif
+}
+
+/// `sums`, and `weight` times what the stretch adds, but for the factor of `walk_sum`.
+fn walk_add(sums: Contribution, walk: Walk, weight: f32) -> Contribution {
+    var all = sums;
+#ifdef POWER
+    let own = contribution(walk.middle, 0.5 * walk.step);
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        all.layers[layer] += weight * own.layers[layer];
+    }
+#else ifdef TRIGONOMETRIC
+    let own = contribution(walk.middle, 0.5 * walk.step);
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        all.layers[layer] += weight * own.layers[layer];
+    }
+#else
+    var at = walk.middle;
+    for (var layer = 0u; layer < LAYERS; layer++) {
+#ifdef PERIODIC
+        let mean = select(at.sine.x, 1.0, layer == 0u);
+        all.layers[layer] += weight * vec4<f32>(mean, at.cosine.y, at.sine.z, at.cosine.w);
+#else
+        all.layers[layer] += weight * at.cosine;
+#endif
+        at = harmonics_next(at);
+    }
+#endif
+    return all;
+}
+
+/// The sums of `walk_add` over stretches that are `step` long, as sums of `contribution`.
+fn walk_sum(sums: Contribution, step: f32) -> Contribution {
+#ifdef POWER
+    return sums;
+#else ifdef TRIGONOMETRIC
+    return sums;
+#else
+    var all = sums;
+#ifdef PERIODIC
+    var extent = periods_first(0.5 * step);
+#else
+    var extent = harmonics_first(0.5 * step);
+#endif
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        let first = vec4<f32>(select(ROOT_OF_TWO, 1.0, layer == 0u), vec3<f32>(ROOT_OF_TWO));
+#ifdef PERIODIC
+        all.layers[layer] *= first * period_spread(extent, 0.5 * step, layer);
+#else
+        all.layers[layer] *= first * cosine_spread(extent, 0.5 * step, layer);
+#endif
+        extent = harmonics_next(extent);
+    }
+    return all;
+#endif
 }

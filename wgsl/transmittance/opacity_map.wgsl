@@ -39,10 +39,15 @@ fn period_integral(at: Harmonics, depth: f32, group: u32) -> vec4<f32> {
     return vec4<f32>(select(own.x, depth, group == 0u), own.yzw);
 }
 
+/// What the functions of a group at the middle of a stretch are multiplied by to give their means over it, as `cosine_spread`.
+fn period_spread(at_half: Harmonics, half: f32, group: u32) -> vec4<f32> {
+    return sine_over_angle(at_half.sine, 2.0 * PI * half * period_orders(group));
+}
+
 /// Coefficients of a group of a stretch of optical depth 1, as `extinction_coefficients`, the harmonics being those of
 /// `periods_first`.
 fn opacity_coefficients(middle: Harmonics, extent: Harmonics, half: f32, group: u32) -> vec4<f32> {
-    return period_basis(middle, group) * sine_over_angle(extent.sine, 2.0 * PI * half * period_orders(group));
+    return period_basis(middle, group) * period_spread(extent, half, group);
 }
 
 /// Optical depth from the near side to `depth` 0..1, which ringing may make negative. `layers`: of the map.

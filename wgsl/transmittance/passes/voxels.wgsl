@@ -25,10 +25,12 @@
 #import airlight::core::light::Light
 #import airlight::core::volume::{VolumeSpace, segment_in_box, march_steps, voxel_at}
 #import airlight::transmittance::light_space::{map_point, map_range}
-#import airlight::transmittance::map_form::{contribution, LAYERS}
+#import airlight::transmittance::map_form::{
+    Contribution, contribution, walk_add, walk_from, walk_on, walk_sum, LAYERS
+}
 #import airlight::transmittance::medium::extinction_of_value
 #ifdef BOUNDED
-#import airlight::transmittance::bounded_map::{depth_in_interval, length_in_interval}
+#import airlight::transmittance::bounded_map::LEAST_INTERVAL
 #endif
 #ifdef FUNCTION
 #import airlight::transmittance::function_map::mean_transmittance
@@ -98,12 +100,23 @@ fn march_voxels(@builtin(global_invocation_id) id: vec3<u32>) {
     textureStore(intervals, id.xy, vec4<f32>(interval, 0.0, 0.0));
 #endif
 
-    var sums: array<vec4<f32>, LAYERS>;
-#ifdef FUNCTION
-    // Clear up to where the volume begins, and the same from where it ends.
-    let clear = contribution(0.5 * part.x, 0.5 * part.x);
+#ifdef BOUNDED
+    let scale = 1.0 / max(interval.y - interval.x, LEAST_INTERVAL);
+    let near_side = interval.x;
+#else
+    let scale = 1.0;
+    let near_side = 0.0;
+#endif
+    let walk_step = depth_step * scale;
+    var sums: Contribution;
     for (var layer = 0u; layer < LAYERS; layer++) {
-        sums[layer] = part.x * clear.layers[layer];
+        sums.layers[layer] = vec4<f32>(0.0);
+    }
+#ifdef FUNCTION
+    // Clear up to where the volume begins, and the same from where it ends. Where nothing is, transmittance stays.
+    var clear = contribution(0.5 * part.x, 0.5 * part.x);
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        clear.layers[layer] *= part.x;
     }
     var passed = 0.0;
 #endif
@@ -111,42 +124,37 @@ fn march_voxels(@builtin(global_invocation_id) id: vec3<u32>) {
         let at = origin + (part.x + (f32(next) + 0.5) * depth_step) * along;
         let run = run_of_samples(brick_distances, textureDimensions(extinction), at, step, next, steps);
 #ifdef FUNCTION
-        // Where nothing is, transmittance stays.
         let half = 0.5 * f32(run.begin - next) * depth_step;
         let stays = contribution(part.x + f32(next) * depth_step + half, half);
         for (var layer = 0u; layer < LAYERS; layer++) {
-            sums[layer] += 2.0 * half * exp(-passed) * stays.layers[layer];
+            clear.layers[layer] += 2.0 * half * exp(-passed) * stays.layers[layer];
         }
 #endif
+        // A run among occupied bricks is at most some 14 voxels long: what a walk may be.
+        var walk = walk_from((part.x + (f32(run.begin) + 0.5) * depth_step - near_side) * scale, walk_step);
         for (var i = run.begin; i < run.end; i++) {
             let depth = part.x + (f32(i) + 0.5) * depth_step;
             let optical_depth = extinction_at(origin + depth * along) * metres;
 #ifdef FUNCTION
-            let own = contribution(depth, 0.5 * depth_step);
             let weight = depth_step * exp(-passed) * mean_transmittance(optical_depth);
             passed += optical_depth;
 #else
             let weight = optical_depth;
-#ifdef BOUNDED
-            let own = contribution(depth_in_interval(interval, depth), length_in_interval(interval, 0.5 * depth_step));
-#else
-            let own = contribution(depth, 0.5 * depth_step);
 #endif
-#endif
-            for (var layer = 0u; layer < LAYERS; layer++) {
-                sums[layer] += weight * own.layers[layer];
-            }
+            sums = walk_add(sums, walk, weight);
+            walk = walk_on(walk);
         }
         next = run.end;
     }
+    sums = walk_sum(sums, walk_step);
 #ifdef FUNCTION
     let rest = 1.0 - part.y;
     let behind = contribution(part.y + 0.5 * rest, 0.5 * rest);
     for (var layer = 0u; layer < LAYERS; layer++) {
-        sums[layer] += rest * exp(-passed) * behind.layers[layer];
+        sums.layers[layer] += clear.layers[layer] + rest * exp(-passed) * behind.layers[layer];
     }
 #endif
     for (var layer = 0u; layer < LAYERS; layer++) {
-        textureStore(coefficients, id.xy, layer, clamp(sums[layer], vec4<f32>(-GREATEST), vec4<f32>(GREATEST)));
+        textureStore(coefficients, id.xy, layer, clamp(sums.layers[layer], vec4<f32>(-GREATEST), vec4<f32>(GREATEST)));
     }
 }

@@ -199,9 +199,9 @@ fn colors<T: Copy>(picture: &[T]) -> Vec<T> {
 
 /// A marched plume lit through a map, the map's building counted in, against marches to the light from every step.
 pub fn brute_force(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
-    // The plume fills the height of the picture and a third of its width.
+    // Smoke fills the picture.
     let target = Vec3::new(0.0, 3.0, 0.0);
-    let place = (target + Vec3::new(1.2, 0.2, 2.4), target);
+    let place = (target + Vec3::new(0.6, 0.1, 1.2), target);
     let volume = plume([192, 480, 192], 9);
     let medium = Medium::new(gpu, shaders, volume, place, Vec3::new(0.5, 0.8, 0.3), SIZE)?;
     let settings = |form, coefficients| MapSettings {
