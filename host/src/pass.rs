@@ -278,6 +278,31 @@ impl Pass {
         Self::render(gpu, &shaders.compose_with(pass, definitions)?, &stages)
     }
 
+    /// Like [`Pass::picture`] for several pictures at once, one format a location.
+    ///
+    /// # Errors
+    /// As [`Pass::picture`].
+    pub fn pictures(
+        gpu: &Gpu,
+        shaders: &Shaders,
+        pass: &str,
+        definitions: &Definitions,
+        fragment: &str,
+        formats: &[wgpu::TextureFormat],
+    ) -> Result<Self, PassError> {
+        let stages = RenderStages {
+            vertex: "vertex_picture",
+            fragment: Some(fragment),
+            vertices: None,
+            target: None,
+            depth: None,
+            samples: 1,
+        };
+        let targets: Vec<_> =
+            formats.iter().map(|format| Some(wgpu::ColorTargetState::from(*format))).collect();
+        Self::render_to(gpu, &shaders.compose_with(pass, definitions)?, &stages, &targets)
+    }
+
     /// Records the only compute entry point over at least `size` invocations.
     pub fn dispatch(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound, size: [u32; 3]) {
         if let Pipelines::Compute(entries) = &self.pipelines
@@ -315,16 +340,27 @@ impl Pass {
 
     /// Records a pass built by [`Pass::picture`] over all pixels of `target`.
     pub fn fill(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound, target: &Texture) {
+        self.fill_all(encoder, bound, &[target]);
+    }
+
+    /// Records a pass built by [`Pass::pictures`] over all pixels of its targets, which have one size.
+    pub fn fill_all(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound, targets: &[&Texture]) {
         let ops =
             wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+        let attachments: Vec<_> = targets
+            .iter()
+            .map(|target| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view: &target.view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops,
+                })
+            })
+            .collect();
         let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(&self.name),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target.view,
-                depth_slice: None,
-                resolve_target: None,
-                ops,
-            })],
+            color_attachments: &attachments,
             ..Default::default()
         });
         self.set(&mut render, bound);

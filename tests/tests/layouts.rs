@@ -7,6 +7,7 @@ use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
     TonemapParameters, VolumeSpace,
 };
+use airlight::painterly::{IsoSurface, MOST_CLIP_PLANES, SurfaceLighting};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
@@ -124,6 +125,25 @@ impl Sentinel for [Mat4; MAX_VIEWS] {
     }
 }
 
+impl Sentinel for [Vec4; MOST_CLIP_PLANES] {
+    const TYPE: &'static str = "array<vec4<f32>, 8>";
+    fn zero() -> Self {
+        [Vec4::ZERO; MOST_CLIP_PLANES]
+    }
+    fn sentinel() -> Self {
+        std::array::from_fn(|plane| Vec4::sentinel() * (plane as f32 + 1.0))
+    }
+    fn words() -> Vec<(u32, u32)> {
+        let scaled = |plane: u32, word: u32| (f32::from_bits(word) * (plane + 1) as f32).to_bits();
+        let of = |plane: u32| {
+            <Vec4 as Sentinel>::words()
+                .into_iter()
+                .map(move |(at, word)| (16 * plane + at, scaled(plane, word)))
+        };
+        (0..MOST_CLIP_PLANES as u32).flat_map(of).collect()
+    }
+}
+
 /// Name, WGSL type, words of its sentinel, and the whole struct's bytes with only this field set.
 type Field = (&'static str, &'static str, Vec<(u32, u32)>, Vec<u8>);
 
@@ -221,6 +241,13 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     });
     twin!(twins: MediumLighting {
         albedo: Vec3, g: f32, distance_limit: f32, reserved_a: f32, reserved_b: f32, reserved_c: f32,
+    });
+    twin!(twins: IsoSurface {
+        previous_world_from_unit: Mat4, clip_planes: [Vec4; MOST_CLIP_PLANES], iso_value: f32, value_offset: f32,
+        voxel: f32, distance_limit: f32, clip_count: u32, refinements: u32, frame: u32, reserved: u32,
+    });
+    twin!(twins: SurfaceLighting {
+        direction: Vec3, diffuse: f32, radiance: Vec3, specular: f32, ambient: Vec3, shininess: f32,
     });
     twin!(twins: SplatTarget { size: Vec2, count: u32, reserved: u32 });
     twin!(twins: HoleParameters {

@@ -122,6 +122,7 @@ modules! {
         "transmittance::bounded_map", "transmittance::extinction_map", "transmittance::function_map",
         "transmittance::map_texels", "transmittance::opacity_map", "transmittance::transmittance_moments"
     ],
+    painterly::iso_surface ["core::camera", "core::finite"],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
     scattering::projective ["core::fourier_basis", "core::prefix_sum"],
@@ -187,6 +188,9 @@ passes! {
     transmittance/light_particles,
     transmittance/render_particles,
     transmittance/composite,
+    painterly/iso_raycast,
+    painterly/shade,
+    painterly/solid_bricks,
     scattering/slices,
     scattering/rectify,
     scattering/rectify_projective,
@@ -216,4 +220,4 @@ passes! {
     stylize/evaluate,
 }
 
-systems![core, transmittance, scattering, stylize];
+systems![core, transmittance, painterly, scattering, stylize];

@@ -5,6 +5,7 @@
 //! deterministic: the same parameters give the same data.
 
 mod blue_noise;
+mod fields;
 mod light_image;
 #[cfg(feature = "command")]
 mod load;
@@ -17,6 +18,7 @@ mod tree;
 mod volume;
 
 pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
+pub use fields::{marschner_lobb, quadric_field, sphere_field, torus_field};
 #[cfg(feature = "command")]
 pub(crate) use light_image::linear_from_srgb;
 #[cfg(feature = "command")]

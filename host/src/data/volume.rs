@@ -109,7 +109,7 @@ fn spread([first, last]: [usize; 2], side: usize) -> [usize; 2] {
 }
 
 /// A volume from a function of places in the box 0..1, which reaches from `min` to `max` in the world.
-fn filled(size: [u32; 3], min: Vec3, max: Vec3, value: impl Fn(Vec3) -> f32) -> Volume {
+pub(super) fn filled(size: [u32; 3], min: Vec3, max: Vec3, value: impl Fn(Vec3) -> f32) -> Volume {
     let size = size.map(|side| side.max(1));
     let sides = Vec3::from(size.map(|side| side as f32));
     let mut values = Vec::with_capacity(size.iter().map(|side| *side as usize).product());

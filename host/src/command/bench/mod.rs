@@ -5,6 +5,7 @@ pub mod baselines;
 mod choices;
 mod light_rays;
 mod media_pictures;
+mod painterly;
 mod resolution;
 mod scattering;
 mod stylize;
@@ -72,7 +73,7 @@ struct Report {
     rows: Vec<Row>,
 }
 
-const SYSTEMS: [&str; 3] = ["scattering", "stylize", "transmittance"];
+const SYSTEMS: [&str; 4] = ["painterly", "scattering", "stylize", "transmittance"];
 
 /// Runs the command.
 pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
@@ -95,6 +96,12 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         print(&more);
         rows.extend(more);
     };
+    if asked("painterly") {
+        add(painterly::rows(&gpu, &shaders, quiet)?);
+        if options.tables {
+            add(painterly::tables(&gpu, &shaders, quiet)?);
+        }
+    }
     if asked("scattering") {
         add(scattering::rows(&gpu, &shaders, quiet)?);
         if options.tables {

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Iso-surfaces of classified volumes: where view rays cross them, by dense sampling and bisection; gradients; motion in the
+//! picture.
+
+mod iso_surface;
+
+pub use iso_surface::{Crossing, Solid, classify, marschner_lobb_gradient, motion, trilinear};
