@@ -168,7 +168,7 @@ fn entry(line: &str) -> Option<&str> {
 }
 
 /// Modules that hold what several passes bind.
-const CALLBACKS: [&str; 9] = [
+const CALLBACKS: [&str; 10] = [
     "transmittance/map_form.wgsl",
     "transmittance/transmittance_map.wgsl",
     "scattering/lit.wgsl",
@@ -178,6 +178,7 @@ const CALLBACKS: [&str; 9] = [
     "scattering/evaluated.wgsl",
     "scattering/evaluated_local.wgsl",
     "scattering/evaluated_projective.wgsl",
+    "painterly/stroke_targets.wgsl",
 ];
 
 #[test]
