@@ -4,7 +4,7 @@
 //! [`Gpu`] opens a device on WebGPU's default limits. [`Shaders`] composes modules and passes.
 //! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
 //! of plain functions that record passes into an encoder: [`scattering`],
-//! [`stylize`], [`transmittance`].
+//! [`stylize`], [`transmittance`], [`painterly`].
 
 #[cfg(feature = "command")]
 pub mod command;
@@ -14,6 +14,7 @@ pub mod data;
 pub mod formats;
 mod gpu;
 pub mod layout;
+pub mod painterly;
 mod pass;
 mod resource;
 pub mod scattering;
