@@ -5,6 +5,7 @@ pub mod camera;
 pub mod fourier;
 pub mod light;
 pub mod noise;
+pub mod painterly;
 pub mod phase;
 pub mod prefix_sum;
 pub mod scattering;
