@@ -152,7 +152,7 @@ mod defaults {
         0.01
     }
     pub(super) fn occlusion_tolerance() -> f32 {
-        1.5
+        1.0
     }
 }
 

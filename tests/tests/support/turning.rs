@@ -43,7 +43,7 @@ pub fn style() -> PainterlyStyle {
         color_variation: 0.0,
         orientation: Orientation::Gradient,
         angle: 0.0,
-        occlusion_tolerance: 1.5,
+        occlusion_tolerance: 1.0,
     }
 }
 

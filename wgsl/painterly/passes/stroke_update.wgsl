@@ -3,8 +3,8 @@
 // source: Ramalhao (2010), 4.2.3.
 // note: First of a frame; then `stroke_density`, `stroke_population`, `core/scan`, `stroke_compact`, `core/scan`,
 // note: `stroke_order`, `draw_strokes`. Nothing is read back: counts stay in `counts` and drive the draws.
-// note: A stroke looks at the four pixels around its place and takes the one whose distance fits best, since at a silhouette
-// note: the nearest may show the background.
+// note: A stroke looks at the four pixels around its place and takes the nearest that shows its surface, and its layer if any
+// note: does: at a silhouette the nearest of all may show the background, and beside another layer that one.
 // definition CURVATURE: strokes may follow the direction of greatest curvature.
 // binding color: premultiplied linear RGB, alpha 1 where there is a surface; rgba16float.
 // binding surface: unit normal in the world, 0 where there is no surface, and gradient magnitude; rgba16float.
@@ -49,23 +49,29 @@ fn update_strokes(@builtin(global_invocation_id) id: vec3<u32>) {
     let beside = view_ray(camera, ndc + vec2<f32>(2.0 / size.x, 0.0));
     let footprint = length(beside.origin - ray.origin + predicted * (beside.direction - ray.direction));
 
-    // The four pixels around; the best by how far its distance is off.
-    let corner = floor(select(vec2<f32>(0.5), seen.position, inside) * size - 0.5);
+    let place = select(vec2<f32>(0.5), seen.position, inside) * size;
+    let corner = vec2<i32>(floor(place - 0.5));
     let last = vec2<i32>(source_size()) - 1;
     var best = vec2<u32>(0u);
-    var least = 3e38;
+    var least = 1e9;
+    var visible = false;
+    var stays = false;
     for (var tap = 0; tap < 4; tap++) {
-        let pixel = vec2<u32>(clamp(vec2<i32>(corner) + vec2<i32>(tap & 1, tap >> 1u), vec2<i32>(0), last));
+        let pixel = vec2<u32>(clamp(corner + vec2<i32>(tap & 1, tap >> 1u), vec2<i32>(0), last));
         let candidate = surface_texel(pixel);
-        let off = select(3e38, abs(candidate.distance - predicted), candidate.distance >= 0.0);
-        best = select(best, pixel, off < least);
-        least = min(least, off);
+        let seen_here = inside && is_seen(predicted, candidate, ray, footprint, style.occlusion_tolerance);
+        let stays_here = stays_in_layer(
+            candidate.magnitude * style.gradient_scale, stroke.layer, style.thresholds, style.hysteresis
+        );
+        let away = vec2<f32>(pixel) + 0.5 - place;
+        let score = dot(away, away) + select(100.0, 0.0, seen_here) + select(10.0, 0.0, stays_here);
+        let better = score < least;
+        best = select(best, pixel, better);
+        visible = select(visible, seen_here, better);
+        stays = select(stays, stays_here, better);
+        least = min(least, score);
     }
     let surface = surface_texel(best);
-    let visible = inside && is_seen(predicted, surface, ray, footprint, style.occlusion_tolerance);
-    let stays = stays_in_layer(
-        surface.magnitude * style.gradient_scale, stroke.layer, style.thresholds, style.hysteresis
-    );
 
     let leaves = select(STROKE_LEAVES, stroke.state, stays || stroke.state != STROKE_STAYS);
     let state = select(STROKE_HIDDEN, leaves, visible);
