@@ -19,6 +19,8 @@ use turning::{Show, Turning, even_brush, style};
 
 const SIZE: [u32; 2] = [200, 125];
 const PICTURE: [u32; 2] = [400, 250];
+/// Rasterisers round corners to a 256th of a pixel.
+const SNAP: f64 = 1.5 / 256.0;
 
 fn quad(stroke: &Stroke) -> Quad {
     Quad {
@@ -63,7 +65,8 @@ fn densities(show: &mut Show, anticipation: f64, brush: impl Fn([f64; 2]) -> f64
             let at = [x, y].map(|k| k as f64 + 0.5);
             let sides = [f64::from(PICTURE[0]) / f64::from(width), f64::from(PICTURE[1]) / f64::from(height)];
             for (layer, quads) in quads.iter().enumerate() {
-                let (sum, doubtful) = density(quads, [at[0] * sides[0], at[1] * sides[1]], 2e-4, &brush);
+                let (sum, doubtful) =
+                    density(quads, [at[0] * sides[0], at[1] * sides[1]], SNAP * sides[0], &brush);
                 if doubtful {
                     worst[2] += 1.0;
                 } else {
@@ -92,10 +95,12 @@ fn densities_are_the_sums_of_their_strokes() {
         println!(
             "step {step}, anticipation {anticipation}: off by {worst:.1e} of up to {most:.3}; {doubtful} texels in doubt"
         );
-        // Half floats: n additions, each rounded by at most 2^-11 of the sum, half of it on average and to either side.
-        assert!(most > 0.05 && worst < 2e-3 * most + 1e-4, "{worst:e} {most}");
+        // Half floats: n additions, each rounded by at most 2^-11 of the sum so far, which in the mean of the additions is
+        // half of the whole.
+        let budget = 0.5 * (most / 0.006) * most / 2048.0;
+        assert!(most > 0.05 && worst < budget, "{worst:e} {budget:e}");
         let texels = show.strokes.density.size();
-        assert!(doubtful < texels[0] * texels[1] / 20, "{doubtful}");
+        assert!(doubtful < 3 * texels[0] * texels[1] / 10, "{doubtful}");
     }
 }
 
@@ -125,9 +130,9 @@ fn blended(strokes: &[Stroke], order: &[u32], opacity: f64, ground: [f64; 4]) ->
             let (mut color, mut doubtful) = (ground, false);
             for index in order {
                 let stroke = &strokes[*index as usize];
-                let over = quads[*index as usize].coordinates(at).map(|c| (c - 0.5).abs() - 0.5);
-                doubtful |= over.iter().all(|c| *c < 2e-4) && over.iter().any(|c| *c > -2e-4);
-                if over.iter().all(|c| *c < 0.0) {
+                let (inside, near) = quads[*index as usize].covers(at, SNAP);
+                doubtful |= near;
+                if inside {
                     let alpha = opacity * f64::from(stroke.opacity);
                     let tint = [stroke.color.x, stroke.color.y, stroke.color.z, 1.0].map(f64::from);
                     color = std::array::from_fn(|k| tint[k] * alpha + (1.0 - alpha) * color[k]);

@@ -81,11 +81,16 @@ pub fn paint(point: Vec3) -> [f64; 3] {
 impl Turning {
     /// A ball that covers four fifths of the height of the picture.
     pub fn ball(size: [u32; 2]) -> Self {
+        Self::ball_within(size, 0.372)
+    }
+
+    /// A ball before a camera of a vertical field of view, radians.
+    pub fn ball_within(size: [u32; 2], fov_y: f64) -> Self {
         let camera = ReferenceCamera::perspective(&camera::View {
             eye: Vec3::new(0.0, 0.9, 6.0),
             target: Vec3::new(0.0, 0.0, 0.0),
             up: Vec3::new(0.0, 1.0, 0.0),
-            fov_y: 0.372,
+            fov_y,
             aspect: f64::from(size[0]) / f64::from(size[1]),
             near: 0.1,
             far: 30.0,

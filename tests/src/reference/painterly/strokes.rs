@@ -136,10 +136,18 @@ impl Quad {
         let (dx, dy) = (x - self.middle[0], y - self.middle[1]);
         [(dx * cosine + dy * sine) / self.length + 0.5, (dy * cosine - dx * sine) / self.width + 0.5]
     }
+
+    /// Whether a place is in it, and whether it lies within `margin` pixels of its outline.
+    #[must_use]
+    pub fn covers(&self, at: [f64; 2], margin: f64) -> (bool, bool) {
+        let [along, across] = self.coordinates(at).map(|c| (c - 0.5).abs() - 0.5);
+        let out = (along * self.length).max(across * self.width);
+        (out < 0.0, out.abs() <= margin)
+    }
 }
 
-/// Sum of what quads add at a place: none outside of them, else `weight` of their coordinates; and whether the place lies so
-/// near to an edge of one, within `margin` of its sides, that rounding may put it on either side.
+/// Sum of what quads add at a place: none outside of them, else `weight` times the brush at their coordinates; and whether the
+/// place lies within `margin` pixels of an outline, where a rasteriser that rounds corners may put it on either side.
 #[must_use]
 pub fn density(
     quads: &[(Quad, f64)],
@@ -149,13 +157,10 @@ pub fn density(
 ) -> (f64, bool) {
     let (mut sum, mut doubtful) = (0.0, false);
     for (quad, weight) in quads {
-        let coordinates = quad.coordinates(at);
-        let over = coordinates.map(|c| (c - 0.5).abs() - 0.5);
-        if over.iter().all(|c| *c <= margin) {
-            doubtful |= over.iter().any(|c| *c >= -margin);
-            if over.iter().all(|c| *c < 0.0) {
-                sum += weight * brush(coordinates);
-            }
+        let (inside, near) = quad.covers(at, margin);
+        doubtful |= near;
+        if inside {
+            sum += weight * brush(quad.coordinates(at));
         }
     }
     (sum, doubtful)
