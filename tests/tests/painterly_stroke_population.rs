@@ -35,7 +35,7 @@ fn first_strokes_are_as_many_as_expected_in_each_layer() {
     };
     // Table 5.1 where the probability of placement bounds births, and a style of small strokes where the gap does.
     let all = |style: PainterlyStyle| {
-        let mut style = style;
+        let mut style = PainterlyStyle { density_margin: 0.0, ..style };
         for layer in [&mut style.coarse, &mut style.medium, &mut style.fine] {
             (layer.brush, layer.opacity) = (Some(0), 0.8);
         }
@@ -117,7 +117,7 @@ fn densities_stay_within_their_bounds_while_the_shape_turns() {
         let staying =
             strokes.iter().filter(|s| s.layer as usize == k && s.state == StrokeState::Stays).count();
         println!(
-            "layer {k}: {tiles:.3?} mean {mean:.4}, {inside} of {} tiles inside, {below} below; {staying} stay",
+            "layer {k}: mean {mean:.4}, {inside} of {} tiles inside, {below} below; {staying} stay",
             tiles.len()
         );
         assert!((least..=most).contains(&mean), "{mean}");
@@ -133,7 +133,7 @@ fn what_is_too_dense_is_thinned_out_to_the_maximum_at_once() {
     for _ in 0..4 {
         show.frame(0, |_| ());
     }
-    let mut lower = style();
+    let mut lower = PainterlyStyle { density_margin: 0.0, ..style() };
     for layer in [&mut lower.coarse, &mut lower.medium, &mut lower.fine] {
         (layer.density.min, layer.density.max) = (0.0, 0.03);
     }

@@ -59,11 +59,20 @@ fn what_is_left_out_has_defaults_and_every_key_is_read() {
     assert_eq!((plain.density_unit, plain.anticipation, plain.hysteresis), (0.01, 1.0, 0.1));
     assert_eq!((plain.orientation, plain.rates), (Orientation::Gradient, Rates::SEAMLESS));
     let head = "hysteresis = 0.2\ngradient_scale = 2\ndensity_unit = 0.05\nanticipation = 0\nsize_variation = 0.5\n\
-                color_variation = 0.25\norientation = \"curvature\"\nangle = 90\nocclusion_tolerance = 2\n\
+                color_variation = 0.25\ndensity_margin = 0.5\norientation = \"curvature\"\nangle = 90\nocclusion_tolerance = 2\n\
                 [rates]\ncolor = 0.5\norientation = 0.25\nsize = 0.125\nfade_in = 0.75\nfade_out = 1\nhidden = 0";
     let full = parse_style("x", &text(head, "aspect = 0.5\nopacity = 0.25\nbrush = 2\n")).unwrap();
     assert_eq!((full.hysteresis, full.gradient_scale, full.density_unit), (0.2, 2.0, 0.05));
     assert_eq!((full.anticipation, full.size_variation, full.color_variation), (0.0, 0.5, 0.25));
+    assert_eq!((plain.density_margin, full.density_margin), (0.15, 0.5));
+    for (found, expected) in plain
+        .within_bounds(&plain.fine)
+        .iter()
+        .chain(&full.within_bounds(&full.fine))
+        .zip([0.115, 0.185, 0.15, 0.15])
+    {
+        assert!((found - expected).abs() < 1e-6);
+    }
     assert_eq!((full.orientation, full.angle, full.occlusion_tolerance), (Orientation::Curvature, 90.0, 2.0));
     let rates =
         Rates { color: 0.5, orientation: 0.25, size: 0.125, fade_in: 0.75, fade_out: 1.0, hidden: 0.0 };

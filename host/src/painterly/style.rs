@@ -123,6 +123,10 @@ pub struct PainterlyStyle {
     /// 1: density counts strokes with the opacity that they fade to; 0: with the one that they have, as printed.
     #[cfg_attr(feature = "command", serde(default = "defaults::one"))]
     pub anticipation: f32,
+    /// Share of the way between the bounds of density by which births and deletions keep away from either, 0..0.5: chance lets
+    /// densities stray, and a surface that turns crowds strokes.
+    #[cfg_attr(feature = "command", serde(default = "defaults::density_margin"))]
+    pub density_margin: f32,
     /// Strokes are longer or shorter by up to this share, 0..0.9.
     #[cfg_attr(feature = "command", serde(default))]
     pub size_variation: f32,
@@ -151,6 +155,9 @@ mod defaults {
     pub(super) fn density_unit() -> f32 {
         0.01
     }
+    pub(super) fn density_margin() -> f32 {
+        0.15
+    }
     pub(super) fn occlusion_tolerance() -> f32 {
         1.0
     }
@@ -167,6 +174,13 @@ impl PainterlyStyle {
 
     fn three(&self, of: impl Fn(&LayerStyle) -> f32) -> Vec3 {
         Vec3::from(self.layers().map(of))
+    }
+
+    /// Densities below which strokes of a layer are born, and above which they are deleted.
+    pub fn within_bounds(&self, layer: &LayerStyle) -> [f32; 2] {
+        let DensityBounds { min, max } = layer.density;
+        let margin = self.density_margin * (max - min);
+        [min + margin, max - margin]
     }
 
     /// What is wrong with the style, if anything.
@@ -213,6 +227,7 @@ impl PainterlyStyle {
         within("gradient_scale".into(), self.gradient_scale, positive)?;
         within("density_unit".into(), self.density_unit, positive)?;
         within("anticipation".into(), self.anticipation, share)?;
+        within("density_margin".into(), self.density_margin, (0.0, 0.5, "0 to 0.5"))?;
         within("size_variation".into(), self.size_variation, (0.0, 0.9, "0 to 0.9"))?;
         within("color_variation".into(), self.color_variation, share)?;
         within("angle".into(), self.angle, (-360.0, 360.0, "-360 to 360 degrees"))?;
@@ -247,9 +262,9 @@ impl PainterlyStyle {
             color_variation: self.color_variation,
             opacity: self.three(|layer| layer.opacity),
             density_unit: self.density_unit,
-            density_min: self.three(|layer| layer.density.min),
+            density_min: self.three(|layer| self.within_bounds(layer)[0]),
             anticipation: self.anticipation,
-            density_max: self.three(|layer| layer.density.max),
+            density_max: self.three(|layer| self.within_bounds(layer)[1]),
             occlusion_tolerance: self.occlusion_tolerance,
             brush: self.three(|layer| layer.brush.map_or(-1.0, |brush| brush as f32)),
             orientation: match self.orientation {

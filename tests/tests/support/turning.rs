@@ -39,6 +39,7 @@ pub fn style() -> PainterlyStyle {
         gradient_scale: 1.0,
         density_unit: 0.01,
         anticipation: 1.0,
+        density_margin: 0.15,
         size_variation: 0.0,
         color_variation: 0.0,
         orientation: Orientation::Gradient,

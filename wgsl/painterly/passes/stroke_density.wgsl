@@ -2,7 +2,8 @@
 // summary: Density of strokes: their quads, added up, a layer of strokes a channel.
 // source: Ramalhao (2010), 4.2.4.
 // note: Drawn indirectly with `counts` as arguments into an rgba16float target that is cleared to 0, blended as source +
-// note: destination, for core WebGPU blends no 32-bit floats. A sum of n strokes is rounded n times by at most 2^-11 of it.
+// note: destination, for core WebGPU blends no 32-bit floats. A sum of n strokes is rounded n times by at most 2^-10 of it, for
+// note: adapters may round half floats to nearest or towards 0.
 // note: The target may be a fraction of the picture: density changes over the width of a stroke.
 // binding frame: the frame.
 // binding style: the style.

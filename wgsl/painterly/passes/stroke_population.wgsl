@@ -4,7 +4,6 @@
 // note: `marks` is filled with 1 for each stroke that is kept, then for each pixel that gives birth, in the order of the frame's
 // note: queue, and a 0 at the end; `core/scan` of capacity + pixels + 1 of them gives each its place in the next buffer.
 // note: What is deleted fades out. Density is read at the nearest texel.
-// binding color: unused here.
 // binding surface: unit normal in the world, 0 where there is no surface, and gradient magnitude; rgba16float.
 // binding distances: metres along the view ray, negative where there is no surface; r32float.
 // binding frame: the frame.

@@ -146,24 +146,25 @@ impl Quad {
     }
 }
 
-/// Sum of what quads add at a place: none outside of them, else `weight` times the brush at their coordinates; and whether the
-/// place lies within `margin` pixels of an outline, where a rasteriser that rounds corners may put it on either side.
+/// Sum of what quads add at a place: none outside of them, else `weight` times the brush at their coordinates; of how many; and
+/// whether the place lies within `margin` pixels of an outline, where a rasteriser that rounds corners may put it on either side.
 #[must_use]
 pub fn density(
     quads: &[(Quad, f64)],
     at: [f64; 2],
     margin: f64,
     brush: impl Fn([f64; 2]) -> f64,
-) -> (f64, bool) {
-    let (mut sum, mut doubtful) = (0.0, false);
+) -> (f64, u32, bool) {
+    let (mut sum, mut count, mut doubtful) = (0.0, 0, false);
     for (quad, weight) in quads {
         let (inside, near) = quad.covers(at, margin);
         doubtful |= near;
         if inside {
             sum += weight * brush(quad.coordinates(at));
+            count += 1;
         }
     }
-    (sum, doubtful)
+    (sum, count, doubtful)
 }
 
 /// Shares that are left after frames of a sixtieth of a second, each of which takes `rate` of what is left.
