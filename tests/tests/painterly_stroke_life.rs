@@ -103,7 +103,7 @@ fn a_gradient_at_a_threshold_does_not_chase_strokes_away() {
         let counts = show.again(0, |_| ());
         assert_eq!(counts.layers()[1..], [0, 0]);
         show.targets.write(&sights, |_| 0.1 * above);
-        show.again(0, |step| step.generation = false);
+        show.again(0, |step| (step.generation, step.deletion) = (false, false));
         let staying = show.read().iter().filter(|stroke| stroke.state == StrokeState::Stays).count();
         assert_eq!(staying as u32, if stay { counts.instances } else { 0 });
     }
