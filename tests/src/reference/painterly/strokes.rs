@@ -99,7 +99,7 @@ impl Posed {
     pub fn place(&self, camera: &Camera, of: Vec3) -> Option<[f64; 2]> {
         let [x, y, depth] = camera.project(self.to_world(of))?;
         let inside = x.abs() <= 1.0 && y.abs() <= 1.0 && (0.0..=1.0).contains(&depth);
-        inside.then(|| [0.5 + 0.5 * x, 0.5 - 0.5 * y])
+        inside.then_some([0.5 + 0.5 * x, 0.5 - 0.5 * y])
     }
 
     /// Cosine between the outward normal of a ball at one of its points and the way to the eye: it is seen where this is
