@@ -7,7 +7,7 @@ use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
     TonemapParameters, VolumeSpace,
 };
-use airlight::painterly::{IsoSurface, MOST_CLIP_PLANES, SurfaceLighting};
+use airlight::painterly::{IsoSurface, MOST_CLIP_PLANES, StrokeCounts, StrokeFrame, StrokeStyle, SurfaceLighting};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
@@ -253,6 +253,20 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: HoleParameters {
         cells: Vec2, threshold: f32, persistence: f32, octaves: u32, seed: u32, travel: u32, travel_part: f32,
         displacement: f32, turn: f32, far_depth: f32, reserved: f32,
+    });
+    twin!(twins: StrokeFrame {
+        world_from_unit: Mat4, unit_from_world: Mat4, picture_size: Vec2, seconds: f32, frame: u32,
+        areas: Vec3, seed: u32, capacity: u32, generation: f32, deletion: f32, reserved: f32,
+    });
+    twin!(twins: StrokeStyle {
+        thresholds: Vec3, hysteresis: f32, probability: Vec3, gradient_scale: f32, size: Vec3, size_variation: f32,
+        aspect: Vec3, color_variation: f32, opacity: Vec3, density_unit: f32, density_min: Vec3, anticipation: f32,
+        density_max: Vec3, occlusion_tolerance: f32, brush: Vec3, orientation: u32, angle: f32, color_rate: f32,
+        orientation_rate: f32, size_rate: f32, opacity_rate: f32, fade_out_rate: f32, hidden_rate: f32, reserved: f32,
+    });
+    twin!(twins: StrokeCounts {
+        vertices: u32, instances: u32, first_vertex: u32, first_instance: u32, born: u32, dropped: u32,
+        dropped_in_all: u32, reserved: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
     });
     twins
 }

@@ -179,6 +179,7 @@ const CALLBACKS: [&str; 10] = [
     "scattering/evaluated.wgsl",
     "scattering/evaluated_local.wgsl",
     "scattering/evaluated_projective.wgsl",
+    "painterly/stroke_targets.wgsl",
 ];
 
 #[test]

@@ -3,8 +3,8 @@
 //!
 //! A shader is three things here. An *algorithm module* ([`MODULES`]) holds pure functions, structs
 //! and constants: no bindings, no entry points. A *callback* (`lit`, `prefiltered`,
-//! `column_weights`, `rank_sort`, `evaluated` with its two variants, `map_form`, `map_texels` and `transmittance_map`, among the
-//! modules)
+//! `column_weights`, `rank_sort`, `evaluated` with its two variants, `map_form`, `map_texels`, `transmittance_map` and
+//! `stroke_targets`, among the modules)
 //! holds bindings that several passes share behind functions, for an engine to replace. A
 //! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
@@ -172,6 +172,12 @@ modules! {
     stylize::tf_diffuse [],
     stylize::tf_layers [],
     stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
+    painterly::stroke [],
+    painterly::stroke_placement ["core::noise", "painterly::stroke"],
+    painterly::stroke_density [],
+    painterly::stroke_expand ["painterly::stroke", "painterly::stroke_placement"],
+    painterly::stroke_update ["core::camera", "painterly::stroke", "painterly::stroke_expand"],
+    painterly::stroke_targets ["core::finite", "painterly::stroke_update"],
 }
 
 passes! {
@@ -218,6 +224,12 @@ passes! {
     stylize/transfer_layer,
     stylize/transfer,
     stylize/evaluate,
+    painterly/stroke_update,
+    painterly/stroke_density,
+    painterly/stroke_population,
+    painterly/stroke_compact,
+    painterly/stroke_order,
+    painterly/draw_strokes,
 }
 
 systems![core, transmittance, painterly, scattering, stylize];

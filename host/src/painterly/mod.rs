@@ -1,21 +1,38 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Iso-surfaces of volumes: the host's side of `wgsl/painterly`.
+//! Painterly rendering of volumes: the host's side of `wgsl/painterly`.
 //!
 //! [`IsoRaycast`] casts view rays at the surface of an [`IsoVolume`] that a [`Transfer`] function classifies, and writes colour,
 //! normal, flow and distance of what they hit into [`IsoTargets`], passing over the bricks that [`SolidBricks`] finds empty. [`Shade`] lights colours that were left unlit.
+//! [`Strokes`] keeps brush strokes on such a surface: they follow it, fade in and out, are born where they
+//! lie too thinly and deleted where they lie too densely, and are drawn with [`Brushes`] in a [`PainterlyStyle`].
 
+mod brushes;
 mod error;
 mod iso_raycast;
 mod settings;
 mod shade;
 mod solid_bricks;
+mod stroke_data;
+mod stroke_error;
+mod stroke_passes;
+mod strokes;
+mod style;
+#[cfg(feature = "command")]
+mod style_file;
 mod transfer;
 mod volume;
 
+pub use brushes::{BRUSH_SIZE, BrushImage, Brushes, procedural_brushes};
 pub use error::PainterlyError;
 pub use iso_raycast::{IsoBound, IsoForm, IsoRaycast, IsoTargets};
 pub use settings::{IsoFrame, IsoSettings, IsoSurface, MOST_CLIP_PLANES, SurfaceLighting};
 pub use shade::{Shade, ShadeBound};
 pub use solid_bricks::{BrickRanges, SolidBricks};
+pub use stroke_data::{Stroke, StrokeCounts, StrokeFrame, StrokeState, StrokeStyle};
+pub use stroke_error::StrokeError;
+pub use strokes::{StrokeSettings, StrokeStep, StrokeTargets, Strokes};
+pub use style::{DensityBounds, LayerStyle, Orientation, PainterlyStyle, Rates};
+#[cfg(feature = "command")]
+pub use style_file::{STYLES, parse_style, read_style};
 pub use transfer::{Transfer, TransferPoint};
 pub use volume::IsoVolume;

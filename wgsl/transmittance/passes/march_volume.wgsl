@@ -122,7 +122,11 @@ fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
             let unit = mix(enters, leaves, share);
             let optical_depth = extinction_at(unit) * metres / f32(steps);
 #ifdef REFERENCE
-            let lit = marched_to_light(unit);
+            var lit = 1.0;
+            // A loop, not a branch: some adapters run a branch where no lane takes it, but no such loop.
+            for (var dense = optical_depth > 0.0; dense; dense = false) {
+                lit = marched_to_light(unit);
+            }
 #else
             let at = mix(map_enters, map_leaves, share);
             let lit = transmittance(at.xy, at.z);
