@@ -123,6 +123,9 @@ modules! {
         "transmittance::map_texels", "transmittance::opacity_map", "transmittance::transmittance_moments"
     ],
     painterly::iso_surface ["core::camera", "core::finite"],
+    painterly::spline ["painterly::iso_surface"],
+    painterly::curvature ["core::camera", "core::finite", "painterly::spline"],
+    painterly::advection ["core::finite", "core::noise", "painterly::curvature"],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
     scattering::projective ["core::fourier_basis", "core::prefix_sum"],
@@ -191,6 +194,8 @@ passes! {
     painterly/iso_raycast,
     painterly/shade,
     painterly/solid_bricks,
+    painterly/advect,
+    painterly/ridges,
     scattering/slices,
     scattering/rectify,
     scattering/rectify_projective,
