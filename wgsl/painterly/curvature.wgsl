@@ -18,7 +18,7 @@ const LEAST_SLOPE: f32 = 1e-5;
 /// Curvatures that differ by less than this share of the greater one count as alike.
 const ALIKE: f32 = 0.02;
 /// A surface is flat where its radii are longer than this, in voxels.
-const FLAT_RADIUS: f32 = 1e5;
+const FLAT_RADIUS: f32 = 1e3;
 /// Greatest curvature that is told, 1/m: the greatest half float.
 const MOST_CURVATURE: f32 = 65504.0;
 /// Sine of the angle between view ray and a direction below which the picture shows none.
