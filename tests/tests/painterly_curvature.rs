@@ -138,7 +138,7 @@ fn saddles_bend_both_ways() {
     // Solid below the height 0.4 x^2 - 0.7 y^2 + 0.2 x y.
     let bend = [[0.8, 0.2, 0.0], [0.2, -1.4, 0.0], [0.0; 3]];
     let slope = 0.3;
-    let volume = field([80, 72, 64], boxes()[0].2, |p| {
+    let volume = field([48, 44, 40], boxes()[0].2, |p| {
         0.5 + slope * (0.4 * p.x * p.x - 0.7 * p.y * p.y + 0.2 * p.x * p.y - p.z)
     });
     let setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::new(0.3, 0.2, 1.0)));
