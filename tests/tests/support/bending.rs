@@ -88,7 +88,7 @@ pub fn bends(setting: &Setting, form: IsoForm) -> Vec<Bend> {
         let [one, two, cosine, sine] = texel.map(f64::from);
         found.push(Bend { point, view, curvatures: [one, two], double: [cosine, sine] });
     }
-    assert!(found.len() > 200, "{} hits", found.len());
+    assert!(found.len() > 150, "{} hits", found.len());
     found
 }
 
