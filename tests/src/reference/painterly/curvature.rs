@@ -9,6 +9,10 @@ pub type Form = [[f64; 3]; 3];
 /// The cubic B-spline, or its derivative of an order to 2, as the fourth difference of a truncated power.
 #[must_use]
 pub fn cubic_spline(at: f64, order: usize) -> f64 {
+    // Beyond its support powers cancel but for their rounding.
+    if at.abs() >= 2.0 {
+        return 0.0;
+    }
     let power = |x: f64| match order {
         0 => x.powi(3) / 6.0,
         1 => x.powi(2) / 2.0,
