@@ -7,7 +7,10 @@ use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
     TonemapParameters, VolumeSpace,
 };
-use airlight::painterly::{IsoSurface, MOST_CLIP_PLANES, StrokeCounts, StrokeFrame, StrokeStyle, SurfaceLighting};
+use airlight::painterly::{
+    IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame, StrokeStyle,
+    SurfaceLighting,
+};
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
@@ -249,6 +252,8 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: SurfaceLighting {
         direction: Vec3, diffuse: f32, radiance: Vec3, specular: f32, ambient: Vec3, shininess: f32,
     });
+    twin!(twins: StreakParameters { steps: u32, step_length: f32, seed: u32, contrast: f32 });
+    twin!(twins: RidgeParameters { range: f32, streak_strength: f32, reserved_a: f32, reserved_b: f32 });
     twin!(twins: SplatTarget { size: Vec2, count: u32, reserved: u32 });
     twin!(twins: HoleParameters {
         cells: Vec2, threshold: f32, persistence: f32, octaves: u32, seed: u32, travel: u32, travel_part: f32,

@@ -123,6 +123,15 @@ modules! {
         "transmittance::map_texels", "transmittance::opacity_map", "transmittance::transmittance_moments"
     ],
     painterly::iso_surface ["core::camera", "core::finite"],
+    painterly::spline ["painterly::iso_surface"],
+    painterly::curvature ["core::camera", "core::finite", "painterly::spline"],
+    painterly::advection ["core::finite", "core::noise", "painterly::curvature"],
+    painterly::stroke [],
+    painterly::stroke_placement ["core::noise", "painterly::stroke"],
+    painterly::stroke_density [],
+    painterly::stroke_expand ["painterly::stroke", "painterly::stroke_placement"],
+    painterly::stroke_update ["core::camera", "painterly::stroke", "painterly::stroke_expand"],
+    painterly::stroke_targets ["core::finite", "painterly::stroke_update"],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
     scattering::projective ["core::fourier_basis", "core::prefix_sum"],
@@ -172,12 +181,6 @@ modules! {
     stylize::tf_diffuse [],
     stylize::tf_layers [],
     stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
-    painterly::stroke [],
-    painterly::stroke_placement ["core::noise", "painterly::stroke"],
-    painterly::stroke_density [],
-    painterly::stroke_expand ["painterly::stroke", "painterly::stroke_placement"],
-    painterly::stroke_update ["core::camera", "painterly::stroke", "painterly::stroke_expand"],
-    painterly::stroke_targets ["core::finite", "painterly::stroke_update"],
 }
 
 passes! {
@@ -197,6 +200,14 @@ passes! {
     painterly/iso_raycast,
     painterly/shade,
     painterly/solid_bricks,
+    painterly/advect,
+    painterly/ridges,
+    painterly/stroke_update,
+    painterly/stroke_density,
+    painterly/stroke_population,
+    painterly/stroke_compact,
+    painterly/stroke_order,
+    painterly/draw_strokes,
     scattering/slices,
     scattering/rectify,
     scattering/rectify_projective,
@@ -224,12 +235,6 @@ passes! {
     stylize/transfer_layer,
     stylize/transfer,
     stylize/evaluate,
-    painterly/stroke_update,
-    painterly/stroke_density,
-    painterly/stroke_population,
-    painterly/stroke_compact,
-    painterly/stroke_order,
-    painterly/draw_strokes,
 }
 
 systems![core, transmittance, painterly, scattering, stylize];

@@ -48,6 +48,21 @@ pub enum PainterlyError {
         /// Linear RGB and opacity.
         value: [f32; 4],
     },
+    /// A table over two curvatures that is none.
+    #[error(
+        "a table of {given} colours is impossible: give {side} rows of {side}, with from 2 to {limit} in a row, the width of a texture"
+    )]
+    Table {
+        /// How many there are.
+        given: usize,
+        /// Colours in a row.
+        side: usize,
+        /// The device's limit.
+        limit: u32,
+    },
+    /// Rays that were cast without what is asked for.
+    #[error("the rays were cast without curvature: ask for it by `IsoForm::curvature`")]
+    NoCurvature,
     /// Points that are none or not in order.
     #[error("points of a transfer function must rise in value, from 0 to 1, and be at least one")]
     Points,

@@ -22,15 +22,22 @@ pub struct IsoForm {
     pub deferred: bool,
     /// Nothing but distances.
     pub distance_only: bool,
+    /// Principal curvatures as well; without effect with `distance_only`.
+    pub curvature: bool,
 }
 
 impl IsoForm {
+    fn has_curvature(self) -> bool {
+        self.curvature && !self.distance_only
+    }
+
     fn definitions(self) -> Definitions {
         let flags = [
             self.jitter.definition(),
             self.skipping.then_some("SKIPPING"),
             self.deferred.then_some("DEFERRED"),
             self.distance_only.then_some("DISTANCE_ONLY"),
+            self.has_curvature().then_some("CURVATURE"),
         ];
         flags.into_iter().flatten().fold(Definitions::new(), Definitions::flag)
     }
@@ -46,16 +53,21 @@ pub struct IsoTargets {
     pub flow: Texture,
     /// Metres along the view ray, negative where nothing is seen; r32float.
     pub distance: Texture,
+    /// With [`IsoForm::curvature`] only: principal curvatures, the greater first, 1/m, positive where the surface is convex towards
+    /// the eye's side; (cos 2a, sin 2a) of the direction of the greater absolute one, x right, y down, 0 where there is none;
+    /// rgba16float.
+    pub curvature: Option<Texture>,
 }
 
 impl IsoTargets {
-    fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+    fn new(gpu: &Gpu, size: [u32; 2], curvature: bool) -> Self {
         let target = |format| Texture::target(gpu, size, format);
         Self {
             color: target(TextureFormat::Rgba16Float),
             surface: target(TextureFormat::Rgba16Float),
             flow: target(TextureFormat::Rg16Float),
             distance: target(TextureFormat::R32Float),
+            curvature: curvature.then(|| target(TextureFormat::Rgba16Float)),
         }
     }
 }
@@ -115,10 +127,11 @@ impl IsoRaycast {
     /// [`PainterlyError::Pass`].
     pub fn new(gpu: &Gpu, shaders: &Shaders, form: IsoForm) -> Result<Self, PainterlyError> {
         use TextureFormat as F;
-        let formats: &[F] = if form.distance_only {
-            &[F::R32Float]
-        } else {
-            &[F::Rgba16Float, F::Rgba16Float, F::Rg16Float, F::R32Float]
+        let all = [F::Rgba16Float, F::Rgba16Float, F::Rg16Float, F::R32Float, F::Rgba16Float];
+        let formats: &[F] = match (form.distance_only, form.curvature) {
+            (true, _) => &all[3..4],
+            (false, true) => &all,
+            (false, false) => &all[..4],
         };
         let (name, entry) = ("painterly/iso_raycast", "fragment_iso_raycast");
         let pass = Pass::pictures(gpu, shaders, name, &form.definitions(), entry, formats)?;
@@ -151,7 +164,7 @@ impl IsoRaycast {
         let lighting = uniform(SurfaceLighting::min_size().get());
         // A new texture holds zeros, and so passes over nothing.
         let brick_distances = Texture::storage_volume(gpu, brick_count(volume.size), TextureFormat::R32Uint);
-        let targets = IsoTargets::new(gpu, size);
+        let targets = IsoTargets::new(gpu, size, self.form.has_curvature());
         let mut resources: Vec<(&str, Resource<'_>)> = vec![
             ("camera", (&camera).into()),
             ("previous_camera", (&previous_camera).into()),
@@ -195,7 +208,8 @@ impl IsoRaycast {
     /// Records the rays of all texels.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, bound: &IsoBound) {
         let targets = &bound.targets;
-        let all = [&targets.color, &targets.surface, &targets.flow, &targets.distance];
+        let mut all = vec![&targets.color, &targets.surface, &targets.flow, &targets.distance];
+        all.extend(&targets.curvature);
         let written = if self.form.distance_only { &all[3..] } else { &all[..] };
         self.pass.fill_all(encoder, &bound.bound, written);
     }

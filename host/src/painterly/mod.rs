@@ -3,12 +3,15 @@
 //!
 //! [`IsoRaycast`] casts view rays at the surface of an [`IsoVolume`] that a [`Transfer`] function classifies, and writes colour,
 //! normal, flow and distance of what they hit into [`IsoTargets`], passing over the bricks that [`SolidBricks`] finds empty. [`Shade`] lights colours that were left unlit.
+//! Of the curvatures that may be written too, [`Advect`] makes streaks, and [`Ridges`] colours ridges and valleys.
 //! [`Strokes`] keeps brush strokes on such a surface: they follow it, fade in and out, are born where they
 //! lie too thinly and deleted where they lie too densely, and are drawn with [`Brushes`] in a [`PainterlyStyle`].
 
+mod advect;
 mod brushes;
 mod error;
 mod iso_raycast;
+mod ridges;
 mod settings;
 mod shade;
 mod solid_bricks;
@@ -22,9 +25,11 @@ mod style_file;
 mod transfer;
 mod volume;
 
+pub use advect::{Advect, AdvectBound, StreakParameters};
 pub use brushes::{BRUSH_SIZE, BrushImage, Brushes, procedural_brushes};
 pub use error::PainterlyError;
 pub use iso_raycast::{IsoBound, IsoForm, IsoRaycast, IsoTargets};
+pub use ridges::{CurvatureTable, RidgeParameters, Ridges, RidgesBound};
 pub use settings::{IsoFrame, IsoSettings, IsoSurface, MOST_CLIP_PLANES, SurfaceLighting};
 pub use shade::{Shade, ShadeBound};
 pub use solid_bricks::{BrickRanges, SolidBricks};

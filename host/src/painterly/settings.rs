@@ -207,7 +207,7 @@ impl IsoFrame {
     }
 }
 
-fn in_range(
+pub(super) fn in_range(
     name: &'static str,
     value: f32,
     possible: std::ops::RangeInclusive<f32>,

@@ -33,12 +33,25 @@ impl Shade {
     /// # Errors
     /// [`PainterlyError::Pass`].
     pub fn bind(&self, gpu: &Gpu, rays: &IsoBound) -> Result<ShadeBound, PainterlyError> {
+        self.bind_color(gpu, rays, &rays.targets.color)
+    }
+
+    /// Binds colours that were made of those that rays have written, [`super::Ridges`] for one.
+    ///
+    /// # Errors
+    /// [`PainterlyError::Pass`].
+    pub fn bind_color(
+        &self,
+        gpu: &Gpu,
+        rays: &IsoBound,
+        color: &Texture,
+    ) -> Result<ShadeBound, PainterlyError> {
         let [width, height, _] = rays.targets.color.size();
         let picture = Texture::storage(gpu, [width, height], wgpu::TextureFormat::Rgba16Float);
         let resources = [
             ("camera", rays.camera().into()),
             ("lighting", rays.lighting().into()),
-            ("color", (&rays.targets.color).into()),
+            ("color", color.into()),
             ("surface", (&rays.targets.surface).into()),
             ("picture", (&picture).into()),
         ];

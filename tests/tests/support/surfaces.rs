@@ -25,8 +25,13 @@ pub const PIXELS: usize = 64 * 48;
 pub const RAMP: [[f32; 4]; 2] = [[0.5, 0.25, 0.125, 0.0], [1.0, 0.75, 0.5, 1.0]];
 
 /// All targets, steps from where rays enter.
-pub const PLAIN: IsoForm =
-    IsoForm { jitter: Jitter::None, skipping: false, deferred: false, distance_only: false };
+pub const PLAIN: IsoForm = IsoForm {
+    jitter: Jitter::None,
+    skipping: false,
+    deferred: false,
+    distance_only: false,
+    curvature: false,
+};
 
 /// What was read back.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +40,8 @@ pub struct Seen {
     pub surface: Vec<f32>,
     pub flow: Vec<f32>,
     pub distance: Vec<f32>,
+    /// Empty without [`IsoForm::curvature`].
+    pub curvature: Vec<f32>,
 }
 
 impl Seen {
@@ -45,7 +52,7 @@ impl Seen {
 
     /// Everything is finite, and nothing is written where nothing is seen.
     pub fn check(&self) {
-        let all = [&self.color, &self.surface, &self.flow, &self.distance];
+        let all = [&self.color, &self.surface, &self.flow, &self.distance, &self.curvature];
         assert!(all.iter().all(|values| values.iter().all(|value| value.is_finite())));
         for (i, distance) in self.distance.iter().enumerate() {
             let (color, surface) = (&self.color[4 * i..4 * i + 4], &self.surface[4 * i..4 * i + 4]);
@@ -54,6 +61,8 @@ impl Seen {
                 assert!(
                     *distance == -1.0 && [color, surface, flow].iter().all(|v| v.iter().all(|x| *x == 0.0))
                 );
+                let curvature = self.curvature.get(4 * i..4 * i + 4);
+                assert!(curvature.is_none_or(|texel| texel.iter().all(|x| *x == 0.0)));
             } else {
                 assert_eq!(color[3], 1.0);
                 let length = Vec3::from_slice(surface).length();
@@ -133,7 +142,11 @@ impl Setting {
         let color = shade.as_ref().map_or(&targets.color, |shaded| &shaded.picture);
         let [color, surface, flow, distance] =
             [color, &targets.surface, &targets.flow, &targets.distance].map(|t| t.read(gpu()).unwrap());
-        (Seen { color, surface, flow, distance }, bound.brick_distances().read_words(gpu()).unwrap())
+        let curvature = targets.curvature.as_ref().map(|t| t.read(gpu()).unwrap()).unwrap_or_default();
+        (
+            Seen { color, surface, flow, distance, curvature },
+            bound.brick_distances().read_words(gpu()).unwrap(),
+        )
     }
 
     /// The camera in f64.

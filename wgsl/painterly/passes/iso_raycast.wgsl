@@ -5,11 +5,12 @@
 // note: volume's step at most; the step in which opacity first reaches the iso-value is halved and cut by a secant.
 // note: What is lit, told and written is found after the march. Where a ray enters what is solid, on a face of the box or at a
 // note: clip plane, the normal is that of the face; where it begins there, it points at the eye.
-// note: All targets have 24 bytes a pixel, so that 8 of WebGPU's 32 are left.
+// note: All targets have 24 bytes a pixel, and with CURVATURE the 32 of WebGPU. Faces of the box and clip planes do not bend.
 // note: Texels that are not finite count as 0, and so does what a filter makes of them. With SKIPPING every target holds the same
 // note: bits: samples in empty bricks are passed over, and no others.
 // definition DISTANCE_ONLY: nothing but the distance is written, at location 0.
 // definition DEFERRED: the colour is what the table says, for `shade` to light; without `lighting`.
+// definition CURVATURE: principal curvatures and their direction are written, at location 4; not with DISTANCE_ONLY.
 // definition SKIPPING: bricks in which nothing is solid are passed over.
 // definition JITTER_GRADIENT: steps begin at a part of a step that differs from pixel to pixel, by gradient noise.
 // definition JITTER_BLUE_NOISE: the same by blue noise.
@@ -33,6 +34,10 @@
 }
 #ifndef DISTANCE_ONLY
 #import airlight::painterly::iso_surface::surface_flow
+#ifdef CURVATURE
+#import airlight::painterly::curvature::{world_curvatures, curvature_texel}
+#import airlight::painterly::spline::spline_jet
+#endif
 #ifndef DEFERRED
 #import airlight::painterly::iso_surface::{SurfaceLighting, phong}
 #endif
@@ -239,6 +244,11 @@ struct Targets {
     @location(2) flow: vec2<f32>,
     /// Metres along the view ray, negative where nothing is seen; r32float.
     @location(3) distance: f32,
+#ifdef CURVATURE
+    /// Principal curvatures, the greater first, 1/m, positive where the surface is convex towards the eye's side; (cos 2a,
+    /// sin 2a) of the direction of the greater absolute one in the picture, x right, y down, 0 where there is none; rgba16float.
+    @location(4) curvature: vec4<f32>,
+#endif
 }
 
 /// Change of the value between two places of unit space that differ along one axis, over their difference there.
@@ -272,8 +282,23 @@ fn normal_of_hit(march: March, hit: Hit, gradient: vec3<f32>) -> vec3<f32> {
     return select(sloped, entered, hit.rise == 0.0);
 }
 
+#ifdef CURVATURE
+/// What is written of the curvature at a hit. `unit`, `place`: where it is, in unit space and in the world.
+fn curvature_of_hit(march: March, hit: Hit, unit: vec3<f32>, place: vec3<f32>) -> vec4<f32> {
+    var texel = vec4<f32>(0.0);
+    for (var bends = hit.rise != 0.0; bends; bends = false) {
+        let jet = spline_jet(values, unit, volume.value_scale, surface.value_offset);
+        let size = vec3<f32>(textureDimensions(values));
+        let curvatures = world_curvatures(jet, size, volume.unit_from_world, -hit.rise);
+        texel = curvature_texel(curvatures, camera, place, march.direction);
+    }
+    return texel;
+}
+#endif
+
 fn targets(march: March, hit: Hit) -> Targets {
-    var written = Targets(vec4<f32>(0.0), vec4<f32>(0.0), vec2<f32>(0.0), -1.0);
+    var written: Targets;
+    written.distance = -1.0;
     for (var seen = hit.found; seen; seen = false) {
         let unit = march.enters + hit.at * march.stride;
         let distance = distance_of_hit(march, hit);
@@ -291,6 +316,9 @@ fn targets(march: March, hit: Hit) -> Targets {
         written.surface = vec4<f32>(normal, min(length(gradient) * surface.voxel, 65504.0));
         written.flow = surface_flow(camera, previous_camera, place, previous_place);
         written.distance = distance;
+#ifdef CURVATURE
+        written.curvature = curvature_of_hit(march, hit, unit, place);
+#endif
     }
     return written;
 }

@@ -28,8 +28,13 @@ const SAMPLES: usize = 5;
 /// What errors are: of rays that hit in both, of less than a voxel, so that a grazing ray that slips by counts for little.
 const ERROR: &str = "mean distance of hits from f64, voxels, at most 1";
 /// All targets, without skipping.
-const PLAIN: IsoForm =
-    IsoForm { jitter: Jitter::None, skipping: false, deferred: false, distance_only: false };
+const PLAIN: IsoForm = IsoForm {
+    jitter: Jitter::None,
+    skipping: false,
+    deferred: false,
+    distance_only: false,
+    curvature: false,
+};
 const SKIPPING: IsoForm = IsoForm { skipping: true, ..PLAIN };
 
 /// A volume before a camera.
