@@ -168,7 +168,7 @@ fn entry(line: &str) -> Option<&str> {
 }
 
 /// Modules that hold what several passes bind.
-const CALLBACKS: [&str; 10] = [
+const CALLBACKS: [&str; 11] = [
     "transmittance/map_texels.wgsl",
     "transmittance/map_form.wgsl",
     "transmittance/transmittance_map.wgsl",
