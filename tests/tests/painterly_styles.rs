@@ -25,8 +25,8 @@ fn the_styles_of_the_table_have_its_numbers() {
             assert_eq!((of.probability, of.size), (probability[layer], size[layer]), "{name}");
             assert_eq!((of.density.min, of.density.max), (least, most[layer]), "{name}");
         }
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/styles");
-        assert_eq!(read_style(folder.join(format!("painterly_{name}.toml"))).unwrap(), style);
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/styles/painterly");
+        assert_eq!(read_style(folder.join(format!("{name}.toml"))).unwrap(), style);
     }
     let dense = style("dense");
     assert!(dense.layers().iter().all(|layer| layer.density.max > layer.density.min));

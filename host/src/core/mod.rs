@@ -5,6 +5,7 @@ mod bricks;
 mod camera;
 mod jitter;
 mod light;
+mod light_fit;
 mod raster;
 mod resolve_depth;
 mod scan;

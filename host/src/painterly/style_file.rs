@@ -6,10 +6,10 @@ use std::path::Path;
 
 /// The styles that come with Airlight: names and texts.
 pub const STYLES: [(&str, &str); 4] = [
-    ("a", include_str!("../../styles/painterly_a.toml")),
-    ("b", include_str!("../../styles/painterly_b.toml")),
-    ("c", include_str!("../../styles/painterly_c.toml")),
-    ("dense", include_str!("../../styles/painterly_dense.toml")),
+    ("a", include_str!("../../styles/painterly/a.toml")),
+    ("b", include_str!("../../styles/painterly/b.toml")),
+    ("c", include_str!("../../styles/painterly/c.toml")),
+    ("dense", include_str!("../../styles/painterly/dense.toml")),
 ];
 
 /// Reads a style.
