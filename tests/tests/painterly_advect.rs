@@ -137,10 +137,9 @@ fn a_turning_field_gives_rings() {
 fn lines_end_where_there_is_no_direction_or_a_kink() {
     let _turn = gpu::turn();
     let parameters = StreakParameters { steps: 8, step_length: 1.0, seed: 1, contrast: 0.0 };
-    let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.05];
-    for kind in 0..5 {
+    let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.05].map(|value| [value; 2]);
+    for (kind, other) in wild.into_iter().chain([[-1.0, 0.0]]).enumerate() {
         // Rows, until a column of something else.
-        let other = if kind < 4 { [wild[kind]; 2] } else { [-1.0, 0.0] };
         let found = streaks(|x, _| if x == 20 { other } else { [1.0, 0.0] }, parameters);
         for (i, found) in found.iter().enumerate() {
             let (x, y) = (i % WIDTH, i / WIDTH);
