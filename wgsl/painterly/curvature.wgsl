@@ -11,6 +11,7 @@
 
 #import airlight::core::camera::Camera
 #import airlight::core::finite::{finite_or, is_finite}
+#import airlight::painterly::iso_surface::direction_in_picture
 #import airlight::painterly::spline::SplineJet
 
 /// Change of the value a voxel below which a gradient is rounding.
@@ -119,9 +120,7 @@ fn double_angle(along: vec2<f32>) -> vec2<f32> {
 /// runs along the view ray, or is 0. `direction`: unit, either way; `view`: unit, of the view ray; world all.
 fn picture_direction(camera: Camera, point: vec3<f32>, direction: vec3<f32>, view: vec3<f32>) -> vec2<f32> {
     let across = direction - view * dot(view, direction);
-    let clip = camera.clip_from_world * vec4<f32>(point, 1.0);
-    let change = camera.clip_from_world * vec4<f32>(across, 0.0);
-    let moved = (change.xy * clip.w - clip.xy * change.w) * vec2<f32>(camera.viewport.x, -camera.viewport.y);
+    let moved = direction_in_picture(camera, point, across, camera.viewport);
     let shown = length(across) > LEAST_SINE && is_finite(moved.x) && is_finite(moved.y);
     return select(vec2<f32>(0.0), double_angle(select(vec2<f32>(1.0), moved, shown)), shown);
 }

@@ -162,6 +162,14 @@ fn pixel_of_point(camera: Camera, point: vec3<f32>) -> vec3<f32> {
     return vec3<f32>((ndc * vec2<f32>(0.5, -0.5) + 0.5) * camera.viewport, clip.w);
 }
 
+/// Direction in a picture of `size` pixels, x right, y down, of any length, of a `direction` of the world at a point before the camera.
+fn direction_in_picture(camera: Camera, point: vec3<f32>, direction: vec3<f32>, size: vec2<f32>) -> vec2<f32> {
+    let clip = camera.clip_from_world * vec4<f32>(point, 1.0);
+    let change = camera.clip_from_world * vec4<f32>(direction, 0.0);
+    // The derivative of xy / w, times w squared.
+    return (change.xy * clip.w - clip.xy * change.w) * size * vec2<f32>(1.0, -1.0);
+}
+
 /// Greatest motion that is told, pixels.
 const GREATEST_FLOW: f32 = 16384.0;
 

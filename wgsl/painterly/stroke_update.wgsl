@@ -10,6 +10,7 @@
 // note: a frame, against "seamless"; 10 % may be meant. All are rates a sixtieth of a second here, at any frame rate.
 
 #import airlight::core::camera::{Camera, Ray}
+#import airlight::painterly::iso_surface::{direction_in_picture, distance_tolerance}
 #import airlight::painterly::stroke::{
     Stroke, StrokeStyle, STROKE_GONE, STROKE_STAYS, STROKE_HIDDEN, ALONG_CURVATURE, FIXED_ANGLE, of_layer, target_opacity
 }
@@ -75,18 +76,10 @@ fn seen_point(camera: Camera, world: vec3<f32>) -> SeenPoint {
 /// Whether a point at the distance `predicted`, metres along `ray`, is the surface that a pixel shows. `footprint`: metres
 /// across a pixel there. `tolerance`: pixels.
 fn is_seen(predicted: f32, surface: SurfaceTexel, ray: Ray, footprint: f32, tolerance: f32) -> bool {
-    let cosine = clamp(abs(dot(surface.normal, ray.direction)), 0.1, 1.0);
-    let slope = sqrt(1.0 - cosine * cosine) / cosine;
-    let allowed = tolerance * footprint * (0.5 + slope) + 1e-5 * predicted;
+    let cosine = max(abs(dot(surface.normal, ray.direction)), 0.1);
+    let bends = 0.5 * tolerance * footprint + 1e-5 * predicted;
+    let allowed = distance_tolerance(footprint, cosine, tolerance, bends);
     return surface.distance >= 0.0 && abs(surface.distance - predicted) <= allowed;
-}
-
-/// Direction in the picture, pixels x right, y down, of any length, of a `direction` of the world at a point before the camera.
-fn picture_direction(camera: Camera, world: vec3<f32>, direction: vec3<f32>, picture_size: vec2<f32>) -> vec2<f32> {
-    let clip = camera.clip_from_world * vec4<f32>(world, 1.0);
-    let change = camera.clip_from_world * vec4<f32>(direction, 0.0);
-    // The derivative of xy / w, times w squared.
-    return (change.xy * clip.w - clip.xy * change.w) * picture_size * vec2<f32>(1.0, -1.0);
 }
 
 /// Orientation that a stroke on a surface has by its style, radians, -pi/2 .. pi/2; `otherwise` where the surface has none.
@@ -95,7 +88,7 @@ fn surface_orientation(
     camera: Camera, world: vec3<f32>, ray: Ray, surface: SurfaceTexel, style: StrokeStyle, picture_size: vec2<f32>,
     otherwise: f32
 ) -> f32 {
-    let gradient = picture_direction(camera, world, surface.normal, picture_size);
+    let gradient = direction_in_picture(camera, world, surface.normal, picture_size);
     let cosine = dot(surface.normal, ray.direction);
     let oblique = 1.0 - cosine * cosine > LEAST_SINE * LEAST_SINE && any(gradient != vec2<f32>(0.0));
     let across = atan2(gradient.x, select(1.0, -gradient.y, oblique));

@@ -124,13 +124,15 @@ modules! {
     ],
     painterly::iso_surface ["core::camera", "core::finite"],
     painterly::spline ["painterly::iso_surface"],
-    painterly::curvature ["core::camera", "core::finite", "painterly::spline"],
+    painterly::curvature ["core::camera", "core::finite", "painterly::iso_surface", "painterly::spline"],
     painterly::advection ["core::finite", "core::noise", "painterly::curvature"],
     painterly::stroke [],
     painterly::stroke_placement ["core::noise", "painterly::stroke"],
     painterly::stroke_density [],
     painterly::stroke_expand ["painterly::stroke", "painterly::stroke_placement"],
-    painterly::stroke_update ["core::camera", "painterly::stroke", "painterly::stroke_expand"],
+    painterly::stroke_update [
+        "core::camera", "painterly::iso_surface", "painterly::stroke", "painterly::stroke_expand"
+    ],
     painterly::stroke_targets ["core::finite", "painterly::stroke_update"],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],

@@ -51,11 +51,8 @@ impl LightRays {
         places: &[f64],
     ) -> Result<Vec<f32>, CommandError> {
         let settings = MapSettings::new(form, coefficients, [self.width() as u32, 1]);
-        let map = TransmittanceMap::new(gpu, settings, &light()?).map_err(CommandError::failure)?;
         let volume =
             VolumeTexture::new(gpu, &self.volume()?, 1.0, Reading::Nearest).map_err(CommandError::failure)?;
-        let voxels = Voxels::new(gpu, shaders, settings, Reading::Nearest).map_err(CommandError::failure)?;
-        let bound = voxels.bind(gpu, &map, &volume).map_err(CommandError::failure)?;
         let texels = self.width() as f64;
         let points: Vec<Vec3> = places
             .iter()
@@ -65,13 +62,7 @@ impl LightRays {
                 Vec3::new(x as f32, 0.0, (0.5 * RANGE - depth * RANGE) as f32)
             })
             .collect();
-        let query = Query::new(gpu, shaders, settings, false).map_err(CommandError::failure)?;
-        let asked = query.bind(gpu, &map, &points).map_err(CommandError::failure)?;
-        let mut encoder = gpu.encoder();
-        voxels.record(&mut encoder, &bound);
-        query.record(&mut encoder, &asked).map_err(CommandError::failure)?;
-        gpu.submit(encoder)?;
-        asked.read(gpu).map_err(CommandError::failure)
+        answers((gpu, shaders), settings, &light()?, (&volume, Reading::Nearest), &points)
     }
 
     /// Exact transmittance of every ray at every depth.
@@ -133,6 +124,26 @@ fn group_means(found: &[f32], exact: &[f64], length: usize) -> Vec<f64> {
         .zip(exact.chunks(length))
         .map(|(found, exact)| airlight_tests::error::mean_absolute(found, exact))
         .collect()
+}
+
+/// Transmittance at points, by a map of a volume.
+pub fn answers(
+    (gpu, shaders): (&Gpu, &Shaders),
+    settings: MapSettings,
+    light: &Light,
+    (volume, reading): (&VolumeTexture, Reading),
+    points: &[Vec3],
+) -> Result<Vec<f32>, CommandError> {
+    let map = TransmittanceMap::new(gpu, settings, light).map_err(CommandError::failure)?;
+    let voxels = Voxels::new(gpu, shaders, settings, reading).map_err(CommandError::failure)?;
+    let bound = voxels.bind(gpu, &map, volume).map_err(CommandError::failure)?;
+    let query = Query::new(gpu, shaders, settings, false).map_err(CommandError::failure)?;
+    let asked = query.bind(gpu, &map, points).map_err(CommandError::failure)?;
+    let mut encoder = gpu.encoder();
+    voxels.record(&mut encoder, &bound);
+    query.record(&mut encoder, &asked).map_err(CommandError::failure)?;
+    gpu.submit(encoder)?;
+    asked.read(gpu).map_err(CommandError::failure)
 }
 
 /// A light that shines along −z through the range.

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures of a cloud and of a plume through transmittance maps, against brute force in cost and against f64 in error.
 
+use super::light_rays::answers;
 use super::transmittance::{MAP, SYSTEM, form_name};
 use super::{Quality, Row, figure, interleaved, ratio, time};
 use crate::command::CommandError;
 use crate::core::{Bricks, Camera, DepthRange, Light, PerspectiveView, Reading, VolumeTexture};
 use crate::data::{Random, Volume, cloud, plume};
 use crate::transmittance::{
-    Form, MapSettings, MediumLighting, MediumView, Precision, Query, TransmittanceMap, VolumePicture,
+    Form, MapSettings, MediumLighting, MediumView, Precision, TransmittanceMap, VolumePicture,
     VolumePictureBound, Voxels,
 };
 use crate::{Bound, Buffer, Gpu, Shaders, Texture};
@@ -296,16 +297,7 @@ pub fn plume_errors(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandErr
     let mut rows = Vec::new();
     for form in [Form::Extinction, Form::Bounded] {
         let settings = MapSettings::new(form, 16, [256, 256]);
-        let map = TransmittanceMap::new(gpu, settings, &light).map_err(CommandError::failure)?;
-        let voxels = Voxels::new(gpu, shaders, settings, Reading::Linear).map_err(CommandError::failure)?;
-        let bound = voxels.bind(gpu, &map, &uploaded).map_err(CommandError::failure)?;
-        let query = Query::new(gpu, shaders, settings, false).map_err(CommandError::failure)?;
-        let asked = query.bind(gpu, &map, &points).map_err(CommandError::failure)?;
-        let mut encoder = gpu.encoder();
-        voxels.record(&mut encoder, &bound);
-        query.record(&mut encoder, &asked).map_err(CommandError::failure)?;
-        gpu.submit(encoder)?;
-        let found = asked.read(gpu).map_err(CommandError::failure)?;
+        let found = answers((gpu, shaders), settings, &light, (&uploaded, Reading::Linear), &points)?;
         let name = |what: &str| format!("plume_error_{}_16_{what}", form_name(form));
         rows.push(figure(SYSTEM, name("mean"), mean_absolute(&found, &exact), "fraction"));
         rows.push(figure(SYSTEM, name("greatest"), max_absolute(&found, &exact), "fraction"));

@@ -13,6 +13,21 @@ pub enum Projection {
     Orthographic,
 }
 
+impl Projection {
+    /// Whether a flag that only the other projection has was given, that flag, and what is wrong. `fov`, `height`: given.
+    pub fn framing_rules(self, fov: bool, height: bool) -> [(bool, &'static str, &'static str); 2] {
+        let orthographic = self == Self::Orthographic;
+        [
+            (orthographic && fov, "--fov", "an orthographic camera has no field of view: give --height"),
+            (
+                !orthographic && height,
+                "--height",
+                "a perspective camera has none: give --fov, or --camera orthographic",
+            ),
+        ]
+    }
+}
+
 /// `--depth-range`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum DepthSpelling {

@@ -27,17 +27,9 @@ type Rule = (bool, &'static str, &'static str);
 
 fn camera(flags: &Options) -> Vec<Rule> {
     let orthographic = flags.camera == Projection::Orthographic;
-    vec![
-        (
-            orthographic && flags.fov.is_some(),
-            "--fov",
-            "an orthographic camera has no field of view: give --height",
-        ),
-        (
-            !orthographic && flags.height.is_some(),
-            "--height",
-            "a perspective camera has none: give --fov, or --camera orthographic",
-        ),
+    let framing = flags.camera.framing_rules(flags.fov.is_some(), flags.height.is_some());
+    let mut rules = framing.to_vec();
+    rules.extend([
         (
             orthographic && flags.depth_range == DepthSpelling::Infinite,
             "--depth-range",
@@ -53,7 +45,8 @@ fn camera(flags: &Options) -> Vec<Rule> {
             "--start",
             "`eye` is impossible for an orthographic camera, whose rays begin at the near plane: leave it out",
         ),
-    ]
+    ]);
+    rules
 }
 
 fn light(flags: &Options) -> Vec<Rule> {

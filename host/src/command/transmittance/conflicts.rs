@@ -4,7 +4,7 @@
 use super::flags::{FormatSpelling, MapSpelling, Options, Source, SplatSpelling};
 use super::medium::{Matter, Medium};
 use crate::command::CommandError;
-use crate::command::parse::{LightSpelling, Projection};
+use crate::command::parse::LightSpelling;
 use crate::transmittance::Form;
 
 /// Most pixels a side.
@@ -18,7 +18,8 @@ const MOST_SUMMED: usize = 200_000;
 /// Misuse: a value, or two flags that cannot be meant together.
 pub fn check(flags: &Options) -> Result<(), CommandError> {
     let refuse = |flag: &str, problem: String| Err(CommandError::misuse(flag, problem));
-    let rules = map(flags).into_iter().chain(medium(flags)).chain(camera(flags));
+    let framing = flags.camera.framing_rules(flags.fov.is_some(), flags.height.is_some());
+    let rules = map(flags).into_iter().chain(medium(flags)).chain(framing);
     for (refused, flag, problem) in rules {
         if refused {
             return refuse(flag, problem.to_owned());
@@ -122,22 +123,6 @@ fn map(flags: &Options) -> Vec<Rule> {
             !matches!(flags.light, LightSpelling::Directional { .. }),
             "--light",
             "only a directional light has transmittance maps: take directional:AZ,EL",
-        ),
-    ]
-}
-
-fn camera(flags: &Options) -> Vec<Rule> {
-    let orthographic = flags.camera == Projection::Orthographic;
-    vec![
-        (
-            orthographic && flags.fov.is_some(),
-            "--fov",
-            "an orthographic camera has no field of view: give --height",
-        ),
-        (
-            !orthographic && flags.height.is_some(),
-            "--height",
-            "a perspective camera has none: give --fov, or --camera orthographic",
         ),
     ]
 }
