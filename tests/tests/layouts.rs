@@ -8,8 +8,8 @@ use airlight::core::{
     TonemapParameters, VolumeSpace,
 };
 use airlight::painterly::{
-    IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame, StrokeStyle,
-    SurfaceLighting,
+    Canvas, IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame,
+    StrokeStyle, SurfaceLighting,
 };
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::stylize::{
@@ -254,6 +254,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     });
     twin!(twins: StreakParameters { steps: u32, step_length: f32, seed: u32, contrast: f32 });
     twin!(twins: RidgeParameters { range: f32, streak_strength: f32, reserved_a: f32, reserved_b: f32 });
+    twin!(twins: Canvas { color: Vec3, underpainting: f32, picture_size: Vec2, reserved: Vec2 });
     twin!(twins: SplatTarget { size: Vec2, count: u32, reserved: u32 });
     twin!(twins: HoleParameters {
         cells: Vec2, threshold: f32, persistence: f32, octaves: u32, seed: u32, travel: u32, travel_part: f32,

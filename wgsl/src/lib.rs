@@ -209,6 +209,7 @@ passes! {
     painterly/stroke_population,
     painterly/stroke_compact,
     painterly/stroke_order,
+    painterly/underpaint,
     painterly/draw_strokes,
     scattering/slices,
     scattering/rectify,

@@ -87,7 +87,7 @@ pub fn load_light_image(path: impl AsRef<std::path::Path>) -> Result<LightImage,
     };
     let picture = image::open(path).map_err(|error| failed(error.to_string()))?.into_rgba32f();
     let size = [picture.width(), picture.height()];
-    let decode = |value: f32| if linear { value } else { linear_from_srgb(value) };
+    let decode = |value: f32| if linear { value } else { super::linear_from_srgb(value) };
     let texels = picture
         .pixels()
         .map(|pixel| {
@@ -96,12 +96,6 @@ pub fn load_light_image(path: impl AsRef<std::path::Path>) -> Result<LightImage,
         })
         .collect();
     LightImage::new(size, texels).map_err(|error| failed(error.to_string()))
-}
-
-/// IEC 61966-2-1.
-#[cfg(feature = "command")]
-pub(crate) fn linear_from_srgb(value: f32) -> f32 {
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]

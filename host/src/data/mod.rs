@@ -13,14 +13,14 @@ mod mesh;
 mod particles;
 mod random;
 mod shapes;
+#[cfg(feature = "command")]
+mod srgb;
 mod terrain;
 mod tree;
 mod volume;
 
 pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
 pub use fields::{marschner_lobb, quadric_field, sphere_field, torus_field};
-#[cfg(feature = "command")]
-pub(crate) use light_image::linear_from_srgb;
 #[cfg(feature = "command")]
 pub use light_image::load_light_image;
 pub use light_image::{LightImage, LightImageError};
@@ -33,6 +33,8 @@ pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};
 pub use particles::{Particle, Particles, burst};
 pub use random::Random;
 pub use shapes::{cuboid, plane, sphere, torus};
+#[cfg(feature = "command")]
+pub(crate) use srgb::{linear_from_hexadecimal, linear_from_srgb};
 pub use terrain::{TerrainParameters, terrain, terrain_height};
 pub use tree::{TreeParameters, tree};
 pub use volume::{Volume, VolumeError, cloud, plume};

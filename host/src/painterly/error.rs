@@ -66,6 +66,19 @@ pub enum PainterlyError {
     /// Points that are none or not in order.
     #[error("points of a transfer function must rise in value, from 0 to 1, and be at least one")]
     Points,
+    /// A file of a transfer function.
+    #[cfg(feature = "command")]
+    #[error("the transfer function {0}")]
+    File(#[from] super::TomlFileError),
+    /// What such a file says.
+    #[cfg(feature = "command")]
+    #[error("the transfer function {path}: {reason}")]
+    Transfer {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What is impossible.
+        reason: String,
+    },
     /// A picture without pixels, or too large.
     #[error("pictures of {size:?} are impossible: every side must lie between 1 and {limit} on this device")]
     Size {

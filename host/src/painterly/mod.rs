@@ -6,11 +6,13 @@
 //! Of the curvatures that may be written too, [`Advect`] makes streaks, and [`Ridges`] colours ridges and valleys.
 //! [`Strokes`] keeps brush strokes on such a surface: they follow it, fade in and out, are born where they
 //! lie too thinly and deleted where they lie too densely, and are drawn with [`Brushes`] in a [`PainterlyStyle`].
+//! [`Painting`] does all of it, frame by frame.
 
 mod advect;
 mod brushes;
 mod error;
 mod iso_raycast;
+mod painting;
 mod ridges;
 mod settings;
 mod shade;
@@ -22,13 +24,18 @@ mod strokes;
 mod style;
 #[cfg(feature = "command")]
 mod style_file;
+#[cfg(feature = "command")]
+mod toml_file;
 mod transfer;
+#[cfg(feature = "command")]
+mod transfer_file;
 mod volume;
 
 pub use advect::{Advect, AdvectBound, StreakParameters};
 pub use brushes::{BRUSH_SIZE, BrushImage, Brushes, procedural_brushes};
 pub use error::PainterlyError;
 pub use iso_raycast::{IsoBound, IsoForm, IsoRaycast, IsoTargets};
+pub use painting::{Canvas, Painting, PaintingError, PaintingFrame, PaintingSettings};
 pub use ridges::{CurvatureTable, RidgeParameters, Ridges, RidgesBound};
 pub use settings::{IsoFrame, IsoSettings, IsoSurface, MOST_CLIP_PLANES, SurfaceLighting};
 pub use shade::{Shade, ShadeBound};
@@ -39,5 +46,9 @@ pub use strokes::{StrokeSettings, StrokeStep, StrokeTargets, Strokes};
 pub use style::{DensityBounds, LayerStyle, Orientation, PainterlyStyle, Rates};
 #[cfg(feature = "command")]
 pub use style_file::{STYLES, parse_style, read_style};
+#[cfg(feature = "command")]
+pub use toml_file::TomlFileError;
 pub use transfer::{Transfer, TransferPoint};
+#[cfg(feature = "command")]
+pub use transfer_file::{TRANSFERS, TransferFunction, parse_transfer, read_transfer};
 pub use volume::IsoVolume;

@@ -17,26 +17,10 @@ pub enum StrokeError {
         /// What is possible.
         range: &'static str,
     },
-    /// A style file that cannot be read.
-    #[error("the style {path} cannot be read: {source}")]
-    Unreadable {
-        /// The file.
-        path: std::path::PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// A style file that is wrong.
-    #[error("{path}:{line}:{column}: {reason}")]
-    File {
-        /// The file.
-        path: std::path::PathBuf,
-        /// From 1 on.
-        line: usize,
-        /// From 1 on.
-        column: usize,
-        /// What is wrong.
-        reason: String,
-    },
+    /// A style file.
+    #[cfg(feature = "command")]
+    #[error("the style {0}")]
+    File(#[from] super::TomlFileError),
     /// Number of strokes.
     #[error("a buffer of {given} strokes is impossible: it must hold between 1 and {limit} on this device")]
     Capacity {

@@ -11,7 +11,7 @@ use super::{
     Blend, Color, Constraint, Keyed, Layer, Mode, Phase, Place, RayProperty, Source, Transfer, TransferError,
     TransferImage, TransferSettings,
 };
-use crate::data::linear_from_srgb;
+use crate::data::{linear_from_hexadecimal, linear_from_srgb};
 use fields::{Document, Fields};
 use glam::{Vec2, Vec3, Vec4};
 use std::path::Path;
@@ -172,7 +172,7 @@ fn color(of: &Fields<'_, '_>) -> Result<Color, TransferError> {
     let alpha = of.checked("alpha", wrong_share)?.unwrap_or(1.0);
     let (rgb, at) = if of.is_text("color") {
         let (text, at) = of.required("color", Fields::text)?;
-        let rgb = from_hexadecimal(&text).ok_or_else(|| {
+        let rgb = linear_from_hexadecimal(&text).map(|rgb| rgb.map(f64::from)).ok_or_else(|| {
             let reason = format!(
                 "`{text}` is no colour: write \"#rrggbb\" (sRGB) or [red, green, blue] (linear, 0..1)"
             );
@@ -184,17 +184,6 @@ fn color(of: &Fields<'_, '_>) -> Result<Color, TransferError> {
     };
     of.refuse("color", at, wrong_color(&rgb))?;
     Ok(Color { rgb: vector(rgb), alpha })
-}
-
-/// Linear RGB of `#rrggbb`.
-fn from_hexadecimal(text: &str) -> Option<[f64; 3]> {
-    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
-    let channel = |at: usize| {
-        let digits = digits.get(at..at + 2).filter(|two| two.bytes().all(|byte| byte.is_ascii_hexdigit()))?;
-        let value = u8::from_str_radix(digits, 16).ok()?;
-        Some(f64::from(linear_from_srgb(f32::from(value) / 255.0)))
-    };
-    Some([channel(0)?, channel(2)?, channel(4)?])
 }
 
 fn vector(of: [f64; 3]) -> Vec3 {

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Transfer functions of volumes as TOML files.
+
+use super::{PainterlyError, Transfer, TransferPoint, toml_file};
+use crate::data::linear_from_hexadecimal;
+use crate::gpu::Gpu;
+use glam::Vec3;
+use std::path::Path;
+
+/// The transfer functions that come with Airlight: names and texts.
+pub const TRANSFERS: [(&str, &str); 2] = [
+    ("head", include_str!("../../styles/painterly/transfers/head.toml")),
+    ("stent", include_str!("../../styles/painterly/transfers/stent.toml")),
+];
+/// Entries of a table.
+const ENTRIES: usize = 1024;
+
+/// A transfer function as a file says it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransferFunction {
+    /// Values of the volume that become 0 and 1; where there are none, its least and greatest.
+    pub range: Option<[f32; 2]>,
+    /// Points, rising in value, 0..1 of the range.
+    pub points: Vec<TransferPoint>,
+}
+
+impl TransferFunction {
+    /// Uploads it.
+    ///
+    /// # Errors
+    /// As [`Transfer::of_points`].
+    pub fn upload(&self, gpu: &Gpu) -> Result<Transfer, PainterlyError> {
+        Transfer::of_points(gpu, &self.points, ENTRIES)
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    range: Option<[f32; 2]>,
+    #[serde(default)]
+    point: Vec<Point>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Point {
+    value: f32,
+    color: Color,
+    opacity: f32,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(untagged, expecting = "a colour is \"#rrggbb\" (sRGB) or [red, green, blue] (linear)")]
+enum Color {
+    Hexadecimal(String),
+    Linear([f32; 3]),
+}
+
+/// Reads a transfer function: `range = [LOW, HIGH]`, and `[[point]]` with `value` in the units of the range (0..1 without one),
+/// `color` as `"#rrggbb"` in sRGB or `[r, g, b]` in linear light, and `opacity`.
+///
+/// # Errors
+/// [`PainterlyError::File`] with line and column; [`PainterlyError::Transfer`].
+pub fn read_transfer(path: impl AsRef<Path>) -> Result<TransferFunction, PainterlyError> {
+    let path = path.as_ref();
+    parse_transfer(path, &toml_file::read(path)?)
+}
+
+/// Like [`read_transfer`] for a text. `path`: where it lies, for errors.
+///
+/// # Errors
+/// As [`read_transfer`].
+pub fn parse_transfer(path: impl AsRef<Path>, text: &str) -> Result<TransferFunction, PainterlyError> {
+    let path = path.as_ref();
+    let File { range, point } = toml_file::parse(path, text)?;
+    let wrong = |reason: String| PainterlyError::Transfer { path: path.to_owned(), reason };
+    let [low, high] = range.unwrap_or([0.0, 1.0]);
+    if !(low.is_finite() && high.is_finite() && high > low) {
+        return Err(wrong(format!("a range from {low} to {high} is impossible: it must rise and be finite")));
+    }
+    if point.is_empty() {
+        return Err(wrong("it has no points: give at least one [[point]]".to_owned()));
+    }
+    let mut points: Vec<TransferPoint> = Vec::new();
+    for (i, Point { value, color, opacity }) in point.into_iter().enumerate() {
+        let wrong = |reason: String| wrong(format!("point {i}: {reason}"));
+        let color = match color {
+            Color::Linear(color) => color,
+            Color::Hexadecimal(text) => linear_from_hexadecimal(&text)
+                .ok_or_else(|| wrong(format!("`{text}` is no colour: write \"#rrggbb\"")))?,
+        };
+        if color.iter().any(|channel| !(0.0..=65504.0).contains(channel)) {
+            return Err(wrong(format!("a colour of {color:?} is impossible: it must lie from 0 to 65504")));
+        }
+        if !(0.0..=1.0).contains(&opacity) {
+            return Err(wrong(format!("an opacity of {opacity} is impossible: it must lie from 0 to 1")));
+        }
+        let share = (value - low) / (high - low);
+        if !(0.0..=1.0).contains(&share) {
+            return Err(wrong(format!("a value of {value} lies beyond the range from {low} to {high}")));
+        }
+        if points.last().is_some_and(|before| before.value >= share) {
+            return Err(wrong(format!(
+                "a value of {value} does not rise: points go from low values to high"
+            )));
+        }
+        points.push(TransferPoint { value: share, color: Vec3::from(color), opacity });
+    }
+    Ok(TransferFunction { range, points })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_say_ranges_and_points() {
+        for (name, text) in TRANSFERS {
+            let function = parse_transfer(name, text).unwrap();
+            assert!(function.points.len() > 1 && function.range.is_some(), "{name}");
+        }
+        let text = "range = [100, 300]\n[[point]]\nvalue = 150\ncolor = [1, 2, 0.5]\nopacity = 0.25\n";
+        let function = parse_transfer("f.toml", text).unwrap();
+        let expected = TransferPoint { value: 0.25, color: Vec3::new(1.0, 2.0, 0.5), opacity: 0.25 };
+        assert_eq!(function, TransferFunction { range: Some([100.0, 300.0]), points: vec![expected] });
+    }
+
+    #[test]
+    fn what_is_impossible_is_said_with_its_place() {
+        let point = |value: &str, color: &str, opacity: &str| {
+            format!("[[point]]\nvalue = {value}\ncolor = {color}\nopacity = {opacity}\n")
+        };
+        let fine = point("0.5", "\"#ffffff\"", "1");
+        for (text, said) in [
+            (String::new(), "no points"),
+            (format!("range = [1, 0]\n{fine}"), "from 1 to 0"),
+            (format!("range = [0, inf]\n{fine}"), "from 0 to inf"),
+            (format!("{fine}{fine}"), "point 1: a value of 0.5 does not rise"),
+            (point("nan", "[1, 1, 1]", "1"), "a value of NaN"),
+            (point("1.5", "[1, 1, 1]", "1"), "a value of 1.5 lies beyond"),
+            (point("0.5", "[1, -1, 1]", "1"), "a colour of [1.0, -1.0, 1.0]"),
+            (point("0.5", "\"#fffff\"", "1"), "`#fffff` is no colour"),
+            (point("0.5", "[1, 1, 1]", "1.1"), "an opacity of 1.1"),
+            (point("0.5", "[1, 1]", "1"), "f.toml:3:9: a colour is \"#rrggbb\""),
+            (format!("{fine}tint = 1\n"), "f.toml:5:1: unknown field `tint`"),
+        ] {
+            let error = parse_transfer("f.toml", &text).unwrap_err().to_string();
+            assert!(error.contains(said) && error.contains("f.toml"), "{text}: {error}");
+        }
+    }
+}
