@@ -324,3 +324,48 @@ fn a_composer_is_filled_in_five_lines() {
         assert!(places.all(|place| place.group == 1), "{}", pass.name);
     }
 }
+
+/// Every module that a shader's text names, with what these name in turn; import paths.
+fn reached(source: &str, into: &mut BTreeSet<String>) {
+    for path in imported(source) {
+        if into.insert(path.clone()) {
+            let module = MODULES.iter().find(|module| module.path == path);
+            reached(module.unwrap_or_else(|| panic!("no module {path}")).source, into);
+        }
+    }
+}
+
+/// The row of a pass in the table of vendoring.
+fn row(pass: &str, source: &str) -> String {
+    let mut all = BTreeSet::new();
+    reached(source, &mut all);
+    let mut cells = [const { Vec::new() }; 3];
+    for path in &all {
+        let name = path.trim_start_matches("airlight::").replace("::", "/");
+        let cell = match () {
+            () if CALLBACKS.contains(&format!("{name}.wgsl").as_str()) => 0,
+            () if name.starts_with("core/") => 1,
+            () => 2,
+        };
+        let own = pass.split_once('/').unwrap().0;
+        let short = name.trim_start_matches("core/").trim_start_matches(&format!("{own}/"));
+        cells[cell].push(short.to_owned());
+    }
+    let cells = cells.map(|names| if names.is_empty() { "none".to_owned() } else { names.join(", ") });
+    format!("| `{pass}` | {} |", cells.join(" | "))
+}
+
+#[test]
+fn the_book_says_what_each_pass_needs() {
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/vendoring.md");
+    let book = std::fs::read_to_string(book).unwrap();
+    let found: Vec<&str> = book.lines().filter(|line| line.starts_with("| `")).collect();
+    let expected: Vec<String> = PASSES.iter().map(|pass| row(pass.name, pass.source)).collect();
+    let mut missing = String::new();
+    for row in expected.iter().filter(|row| !found.contains(&row.as_str())) {
+        missing += &format!("{row}\n");
+    }
+    assert!(missing.is_empty(), "docs/src/vendoring.md lacks these rows:\n{missing}");
+    let needless: Vec<_> = found.iter().filter(|row| !expected.iter().any(|e| e == *row)).collect();
+    assert!(needless.is_empty(), "docs/src/vendoring.md has rows of its own: {needless:#?}");
+}
