@@ -14,6 +14,9 @@ use glam::{Mat4, Vec3};
 /// Metres of the longest side of a .npy volume.
 const LONGEST: f32 = 4.0;
 
+/// Slices that the solid is measured in.
+const SLICES: usize = 32;
+
 /// A volume without what is not finite, and what is to be seen of it.
 pub struct Matter {
     /// The volume, small enough for the device.
@@ -30,13 +33,13 @@ pub struct Matter {
     pub warning: Option<String>,
 }
 
-/// A box and an upright cylinder around what is solid, in the world, metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What holds the solid part of a volume, also where it turns about the upright axis through the middle of its box; metres.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// The box.
+    /// The box around it.
     pub bounds: Bounds,
-    /// Of the cylinder about the box's upright axis.
-    pub radius: f32,
+    /// Of slices of one height, from the lowest to the highest, how far the solid reaches from the axis; negative where it does not.
+    radii: [f32; SLICES],
 }
 
 impl Matter {
@@ -116,30 +119,37 @@ impl Solid {
         let axes =
             [volume.world_from_unit.x_axis, volume.world_from_unit.y_axis, volume.world_from_unit.z_axis];
         let voxel = Vec3::from([0, 1, 2].map(|axis| axes[axis].truncate().length() / sides[axis]));
-        let whole = volume.bounds();
-        let radius_of = |points: &mut dyn Iterator<Item = Vec3>, center: Vec3| {
-            points.map(|point| (point - center).with_y(0.0).length()).fold(0.0, f32::max)
-        };
-        let Some(Bounds { min, max }) = Bounds::of(places()) else {
-            let radius = radius_of(&mut whole.corners().into_iter(), whole.center());
-            return Self { bounds: whole, radius };
-        };
         // Half a voxel is its own, and half way to its neighbours may be solid too.
         let around = voxel.length();
+        let whole = volume.bounds();
+        let Some(Bounds { min, max }) = Bounds::of(places()) else {
+            return Self { bounds: whole, radii: [0.5 * whole.size().with_y(0.0).length(); SLICES] };
+        };
         let bounds = Bounds { min: (min - around).max(whole.min), max: (max + around).min(whole.max) };
-        let radius = around + radius_of(&mut places(), bounds.center());
-        Self { bounds, radius }
+        let (center, height) = (bounds.center(), bounds.size().y);
+        let slice = |y: f32| (((y - bounds.min.y) / height).clamp(0.0, 0.999) * SLICES as f32) as usize;
+        let mut radii = [-1.0_f32; SLICES];
+        for place in places() {
+            let radius = around + (place - center).with_y(0.0).length();
+            let reached = slice(place.y - around)..=slice(place.y + around);
+            radii[reached].iter_mut().for_each(|known| *known = known.max(radius));
+        }
+        Self { bounds, radii }
     }
 
-    /// Points whose convex hull holds the cylinder.
+    /// Points whose convex hull holds it, however it turns.
     pub fn points(&self) -> impl Iterator<Item = Vec3> {
         const AROUND: u16 = 32;
-        let (Bounds { min, max }, center) = (self.bounds, self.bounds.center());
-        let radius = self.radius / (std::f32::consts::PI / f32::from(AROUND)).cos();
-        (0..AROUND).flat_map(move |index| {
-            let angle = std::f32::consts::TAU * f32::from(index) / f32::from(AROUND);
-            let (x, z) = (center.x + radius * angle.sin(), center.z + radius * angle.cos());
-            [Vec3::new(x, min.y, z), Vec3::new(x, max.y, z)]
+        let (bottom, center) = (self.bounds.min.y, self.bounds.center());
+        let height = self.bounds.size().y / SLICES as f32;
+        let slices = self.radii.iter().enumerate().filter(|(_, radius)| **radius >= 0.0);
+        slices.flat_map(move |(index, radius)| {
+            let radius = radius / (std::f32::consts::PI / f32::from(AROUND)).cos();
+            (0..AROUND).flat_map(move |step| {
+                let (sine, cosine) = (std::f32::consts::TAU * f32::from(step) / f32::from(AROUND)).sin_cos();
+                let (x, z) = (center.x + radius * sine, center.z + radius * cosine);
+                [index, index + 1].map(|edge| Vec3::new(x, bottom + height * edge as f32, z))
+            })
         })
     }
 }
@@ -199,7 +209,10 @@ mod tests {
         assert_eq!((found.volume.values[0], found.volume.values[999]), (0.0, 0.0));
         let center = Vec3::new(6.5, 5.5, 5.5);
         assert!(found.solid.bounds.center().distance(center) < 1e-5, "{:?}", found.solid);
-        assert!((found.solid.radius - 3.0_f32.sqrt()).abs() < 1e-5, "{:?}", found.solid);
+        let radius = 3.0_f32.sqrt();
+        assert!(
+            found.solid.bounds.min.distance(center - radius) < 1e-5 && found.solid.radii == [radius; SLICES]
+        );
         // It stays where it is when it turns.
         for degrees in [0.0, 90.0, -33.0, 36000.0 + 12.5] {
             let unit = Vec3::new(0.55, 0.55, 0.55);
