@@ -144,9 +144,11 @@ fn each_flag_changes_the_picture_and_nothing_else_does() {
         "--jitter blue-noise --steps 0.5",
         "--settle 0",
         "--seed 2",
-        "--underpainting 0",
-        "--underpainting 1",
-        "--voxel 2 --eye 2,1,7",
+        // Strokes that have settled hide what lies under them.
+        "--settle 1",
+        "--settle 1 --underpainting 0",
+        "--settle 1 --underpainting 1",
+        "--voxel 0.2 --eye 2,1,7",
     ] {
         let found = painting(at, flags);
         let share = painted(&found);
@@ -154,7 +156,7 @@ fn each_flag_changes_the_picture_and_nothing_else_does() {
         assert!(!seen.contains(&found), "{flags} gives a picture that was there before");
         seen.push(found);
     }
-    // The first of a sequence is the picture of that frame alone, and the canvas is what was said.
+    // Where nothing is painted the canvas is what was said.
     let other = painting(at, "--canvas #ffffff");
     let background = seen[0].iter().zip(&other).filter(|(pixel, _)| **pixel == CANVAS);
     assert!(background.map(|(_, white)| white).all(|white| *white == [255; 3]));

@@ -86,7 +86,7 @@ fn volumes_that_cannot_be_are_refused() {
         bad(
             &format!("--volume {name}"),
             1,
-            &["--volume", name, if name.ends_with('y') { "numpy" } else { "export it again" }],
+            &["--volume", name, if name.ends_with('y') { "numpy.save" } else { "export it again" }],
         );
         std::fs::remove_file(at.join(name)).unwrap();
     }
@@ -277,7 +277,7 @@ fn folders_that_cannot_be_written_are_refused() {
     std::fs::create_dir_all(at.join("taken/painting.png")).unwrap();
     std::fs::create_dir_all(at.join("numbered/painting.0001.png")).unwrap();
     refused(at, "--out file", 1, &["--out", "file", "give the name of a folder"]);
-    refused(at, "--out file/inner", 1, &["--out", "file"]);
+    refused(at, "--out file/inner", 1, &["--out", "file is a file"]);
     refused(at, "--out taken", 1, &["--out", "taken/painting.png", "is a folder"]);
     refused(at, "--out numbered --frames 0..1", 1, &["--out", "painting.0001.png", "is a folder"]);
     succeeds(at, &words(&typed("--out numbered --settle 0")));

@@ -20,13 +20,13 @@ impl Staging {
     /// A failure where files cannot be written there, or where one of the names is a folder's.
     pub fn new(out: &Path, names: impl IntoIterator<Item = PathBuf>) -> Result<Self, CommandError> {
         let failed = |problem: String| CommandError::failure(format!("--out: {problem}"));
-        if out.exists() && !out.is_dir() {
-            return Err(failed(format!("{} is a file; give the name of a folder", out.display())));
+        let there = out.ancestors().find(|path| path.exists()).unwrap_or(Path::new("."));
+        if !there.is_dir() {
+            return Err(failed(format!("{} is a file; give the name of a folder", there.display())));
         }
         if let Some(folder) = names.into_iter().map(|name| out.join(name)).find(|path| path.is_dir()) {
             return Err(failed(format!("{} is a folder; remove it first", folder.display())));
         }
-        let there = out.ancestors().find(|folder| folder.is_dir()).unwrap_or(Path::new("."));
         let filled = tempfile::Builder::new().prefix(".airlight-").tempdir_in(there);
         let filled = filled
             .map_err(|error| failed(format!("cannot write into {}: {}", there.display(), one_line(error))))?;
@@ -78,6 +78,7 @@ mod tests {
         };
         assert!(said(&folder.path().join("a"), "b").contains("is a folder"));
         assert!(said(&out.join("x"), "y").contains("is a file"));
+        assert!(said(&out.join("x/z"), "y").contains("x is a file"));
         assert_eq!(count(), 1);
     }
 }
