@@ -98,10 +98,6 @@ fn volumes_that_cannot_be_are_refused() {
         swapped[40..56].chunks_exact_mut(2).for_each(|side| side.reverse());
         std::fs::write(at.join("swapped.nii"), &swapped).unwrap();
         bad("--volume swapped.nii", 1, &["--volume", "swapped.nii", "no valid NIfTI"]);
-        swapped = nifti(&[5, 4, 3], big);
-        swapped[..4].reverse();
-        std::fs::write(at.join("swapped.nii"), &swapped).unwrap();
-        bad("--volume swapped.nii", 1, &["--volume", "swapped.nii", "no valid NIfTI"]);
     }
     // Axes.
     std::fs::write(at.join("axes.nii"), nifti(&[5, 4, 3, 1, 1], false)).unwrap();
