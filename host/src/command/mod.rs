@@ -9,6 +9,7 @@ mod list;
 mod parse;
 mod progress;
 mod run;
+mod scans;
 mod scattering;
 mod stylize;
 mod text;
