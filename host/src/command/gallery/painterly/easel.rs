@@ -15,11 +15,9 @@ use crate::painterly::{
 use glam::Vec3;
 
 /// Frames in which a still picture fills with strokes; each takes a second, in which strokes of the one before become opaque.
-const FRAMES: u32 = 8;
-/// Linear RGB of the canvas.
-const CANVAS: Vec3 = Vec3::new(0.40, 0.29, 0.17);
+const FRAMES: u32 = 6;
 /// How much of the surface is painted thinly under the strokes.
-const UNDERPAINTING: f32 = 0.5;
+const UNDERPAINTING: f32 = 0.55;
 
 /// A motif, the same on the device, and its light.
 pub struct Easel<'a> {
@@ -98,7 +96,7 @@ impl<'a> Easel<'a> {
             strokes: StrokeSettings::new(source, *size),
             style,
             jitter: Jitter::None,
-            canvas: Canvas::new(CANVAS, UNDERPAINTING),
+            canvas: Canvas::new(self.motif.canvas, UNDERPAINTING),
         };
         let brushes = Brushes::procedural(gpu).map_err(CommandError::failure)?;
         Painting::new(gpu, shaders, &self.uploaded, &self.transfer, brushes, settings)
@@ -162,7 +160,7 @@ impl<'a> Easel<'a> {
         let mut values = picture.read(gpu)?;
         for texel in values.chunks_exact_mut(4) {
             let open = 1.0 - texel[3];
-            for (channel, canvas) in texel.iter_mut().zip(CANVAS.to_array()) {
+            for (channel, canvas) in texel.iter_mut().zip(self.motif.canvas.to_array()) {
                 *channel += open * canvas;
             }
         }

@@ -41,7 +41,7 @@ impl Marks<'_> {
 pub fn orientation_color(orientation: f32) -> [u8; 3] {
     let channel = |third: f32| {
         let phase = 2.0 * orientation - third * std::f32::consts::TAU / 3.0;
-        (255.0 * (0.55 + 0.42 * phase.cos())) as u8
+        (255.0 * (0.46 + 0.34 * phase.cos())) as u8
     };
     [channel(0.0), channel(1.0), channel(2.0)]
 }

@@ -19,13 +19,23 @@ use easel::{Easel, Painted};
 use motifs::{BRAIN, CUT, Motif, STENT};
 
 /// Pictures of this system, as in `--only painterly/NAME`.
-pub const NAMES: [&str; 8] =
-    ["head", "stent", "head_targets", "stent_targets", "stroke_maps", "directions", "progression", "sources"];
+pub const NAMES: [&str; 9] = [
+    "head",
+    "head_cut",
+    "stent",
+    "head_targets",
+    "stent_targets",
+    "stroke_maps",
+    "directions",
+    "progression",
+    "sources",
+];
 
 /// The section of a name; of the last one for a name that is not among [`NAMES`].
 pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, CommandError> {
     match name {
-        "head" => styles::section(studio, folder, &CUT),
+        "head" => styles::section(studio, folder, &BRAIN),
+        "head_cut" => styles::section(studio, folder, &CUT),
         "stent" => styles::section(studio, folder, &STENT),
         "head_targets" => targets::section(studio, folder, &BRAIN),
         "stent_targets" => targets::section(studio, folder, &STENT),

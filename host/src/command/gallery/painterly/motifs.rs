@@ -20,6 +20,8 @@ pub struct Motif {
     pub eye: Vec3,
     /// Metres.
     pub target: Vec3,
+    /// Linear RGB of the canvas.
+    pub canvas: Vec3,
     /// Towards the light, of any length.
     pub towards_light: Vec3,
     /// Curvature at the ends of colour scales, 1/m.
@@ -33,8 +35,9 @@ pub const BRAIN: Motif = Motif {
     read: scans::head,
     turned: [0.0, -50.0, 0.0],
     planes: &[],
-    eye: Vec3::new(0.0, 0.10, 0.90),
-    target: Vec3::new(0.0, -0.005, 0.0),
+    eye: Vec3::new(-0.02, 0.10, 0.97),
+    target: Vec3::new(-0.02, 0.0, 0.0),
+    canvas: Vec3::new(0.40, 0.29, 0.17),
     towards_light: Vec3::new(-0.6, 0.62, 0.5),
     curvature: 120.0,
 };
@@ -44,7 +47,9 @@ pub const CUT: Motif = Motif {
     name: "A brain, cut",
     turned: [0.0, -38.0, 0.0],
     planes: &[[0.0, 0.0, -1.0, 0.06]],
-    target: Vec3::new(0.0, -0.005, 0.0),
+    eye: Vec3::new(0.03, 0.10, 0.96),
+    target: Vec3::new(0.035, 0.0, 0.0),
+    canvas: Vec3::new(0.14, 0.095, 0.06),
     ..BRAIN
 };
 
@@ -54,9 +59,10 @@ pub const STENT: Motif = Motif {
     transfer: "stent",
     read: scans::stent,
     turned: [20.0, 180.0, -165.0],
-    planes: &[[0.0, 1.0, 0.0, 0.15], [0.0, -1.0, 0.0, 0.055], [0.0, 0.0, 1.0, 0.125], [0.0, 0.0, -1.0, 0.11]],
-    eye: Vec3::new(0.015, 0.03, 0.60),
-    target: Vec3::new(0.015, 0.025, 0.0),
+    planes: &[[0.0, 1.0, 0.0, 0.065], [0.0, -1.0, 0.0, 0.10], [0.0, 0.0, 1.0, 0.13], [0.0, 0.0, -1.0, 0.075]],
+    eye: Vec3::new(0.03, 0.015, 0.64),
+    target: Vec3::new(0.03, 0.01, 0.0),
+    canvas: BRAIN.canvas,
     towards_light: Vec3::new(-0.5, 0.75, 0.5),
     curvature: 400.0,
 };

@@ -16,7 +16,7 @@ const CLOSE_UP: u32 = 3;
 /// The section.
 pub fn section(studio: &Studio, folder: &str, motif: &'static Motif) -> Result<Section, CommandError> {
     let easel = Easel::new(studio, motif)?;
-    let about = "The iso-surface as rays see it, the three styles of Table 5.1 and a dense one, after eight still frames; below \
+    let about = "The iso-surface as rays see it, the three styles of Table 5.1 and a dense one, after six still frames; below \
                  each a close-up.";
     let mut album = Album::new(&studio.out, folder, format!("{}, painted", motif.name), about.to_owned())?;
     let rays = easel.cast(IsoForm::default(), 0.0)?;
