@@ -18,8 +18,9 @@ const FIXED: f32 = -35.0;
 /// The section.
 pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let easel = Easel::new(studio, &BRAIN)?;
-    let about = "The same surface with strokes at right angles to the gradient, all at one angle, and along ridges and valleys, at \
-                 right angles to the greatest curvature. Over the first one the orientation of a stroke every 24 pixels.";
+    let about = "The same surface with strokes at right angles to the gradient, all at one angle, and in the picture at right angles to \
+                 the greatest curvature: on gyri along them, and away from the outline. Over the first one the orientation of \
+                 strokes, one or so in every square of 24 pixels.";
     let mut album = Album::new(&studio.out, folder, "Which way strokes run".to_owned(), about.to_owned())?;
     let plain = style("a")?;
     let along = easel.still(plain, 1.0)?;
@@ -29,7 +30,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     album.add_tile("fixed.png", "All at one angle", studio.size, &easel.still(fixed, 1.0)?.pixels)?;
     let ridges = PainterlyStyle { orientation: Orientation::Curvature, angle: 90.0, ..plain };
     let pixels = easel.still(ridges, 1.0)?.pixels;
-    album.add_tile("curvature.png", "Along ridges and valleys", studio.size, &pixels)?;
+    album.add_tile("curvature.png", "At right angles to the greatest curvature", studio.size, &pixels)?;
     album.finish_with_sheet(2, "Orientations laid over strokes; by the gradient; at one angle; by curvature")
 }
 
