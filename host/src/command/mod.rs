@@ -11,6 +11,7 @@ mod painterly;
 mod parse;
 mod progress;
 mod run;
+mod scans;
 mod scattering;
 mod sequence;
 mod staging;
