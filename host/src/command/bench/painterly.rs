@@ -194,7 +194,6 @@ fn signal(gpu: &Gpu, shaders: &Shaders, side: u32) -> Result<Scene, CommandError
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {
     let bar = progress::bar(6, quiet);
     let mut rows = Vec::new();
-    if std::env::var("ONLY_STROKES").is_err() {
     for (name, scene) in [
         ("stent", stent(gpu, shaders)?),
         ("mri", head(gpu, shaders)?),
@@ -207,7 +206,6 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
     bar.set_message("targets and sizes");
     rows.extend(targets(gpu, shaders)?);
     bar.inc(1);
-    }
     let head = Head::new(gpu)?;
     bar.set_message("strokes, a turn");
     rows.extend(painterly_strokes::rows(gpu, shaders, &head)?);

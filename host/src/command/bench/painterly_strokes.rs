@@ -29,6 +29,8 @@ const FRAMES: u32 = 60;
 const ALONE: u32 = 10;
 /// A turn in a frame, degrees.
 const TURN: f32 = 1.0;
+/// Gradients of the skin are a tenth of the range a voxel and less: times this each layer of the style has its share of them.
+const GRADIENT_SCALE: f32 = 2.0;
 /// Pixels along the side of a tile that density is judged in.
 const TILE: usize = 32;
 
@@ -80,13 +82,14 @@ impl Head {
             * self.volume.world_from_unit
     }
 
-    /// The style `dense`.
+    /// The style `dense`, for gradients as the head's skin has them.
     pub(super) fn style() -> Result<PainterlyStyle, CommandError> {
         let (name, text) = STYLES
             .iter()
             .find(|(name, _)| *name == "dense")
             .ok_or_else(|| CommandError::failure("there is no style `dense`"))?;
-        parse_style(name, text).map_err(CommandError::failure)
+        let style = parse_style(name, text).map_err(CommandError::failure)?;
+        Ok(PainterlyStyle { gradient_scale: GRADIENT_SCALE, ..style })
     }
 }
 
