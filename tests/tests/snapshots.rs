@@ -296,7 +296,8 @@ fn painterly_torus() {
     assert_buffer(&name("strokes"), &Buffer { adapter: adapter.clone(), shape, tolerance, values });
     let order = strokes.read_order(gpu()).unwrap();
     let values: Vec<f32> = order.iter().step_by(4).map(|number| *number as f32).collect();
-    let (shape, tolerance) = ([values.len(), 1, 1], Tolerance { absolute: 0.5, relative: 0.0, outliers: 1.0 });
+    let (shape, tolerance) =
+        ([values.len(), 1, 1], Tolerance { absolute: 0.5, relative: 0.0, outliers: 1.0 });
     assert_buffer(&name("order"), &Buffer { adapter: adapter.clone(), shape, tolerance, values });
 
     let pixels = Tonemap::new(gpu(), shaders()).unwrap().run(gpu(), &painting.picture, 1.0).unwrap();

@@ -302,7 +302,8 @@ impl Strokes {
 
     /// Bytes of all buffers and of the density.
     pub fn memory(&self) -> u64 {
-        let one = [&self.counts, &self.marks, &self.birth_bits, &self.sources, &self.layer_marks, &self.order];
+        let one =
+            [&self.counts, &self.marks, &self.birth_bits, &self.sources, &self.layer_marks, &self.order];
         let buffers = one.into_iter().chain(&self.buffers).map(|buffer| buffer.raw.size()).sum::<u64>();
         buffers + self.density.memory()
     }

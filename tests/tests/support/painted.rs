@@ -6,9 +6,9 @@ use crate::gpu::{gpu, shaders};
 use airlight::core::{Camera, DepthRange, Jitter, PerspectiveView};
 use airlight::data::Volume;
 use airlight::painterly::{
-    BrushImage, Brushes, Canvas, DensityBounds, IsoSettings, IsoVolume, LayerStyle, Orientation, Painting,
-    PaintingFrame, PaintingSettings, PainterlyStyle, Rates, StrokeSettings, StrokeState, SurfaceLighting,
-    Transfer,
+    BrushImage, Brushes, Canvas, DensityBounds, IsoSettings, IsoVolume, LayerStyle, Orientation,
+    PainterlyStyle, Painting, PaintingFrame, PaintingSettings, Rates, StrokeSettings, StrokeState,
+    SurfaceLighting, Transfer,
 };
 use airlight_tests::linear;
 use glam::{Mat4, Vec3};
@@ -93,10 +93,7 @@ impl Exhibit {
     pub fn posed(&self, frame: u32) -> Mat4 {
         let middle = self.view.target;
         let turn = Mat4::from_rotation_y(self.turn * frame as f32);
-        Mat4::from_translation(middle)
-            * turn
-            * Mat4::from_translation(-middle)
-            * self.volume.world_from_unit
+        Mat4::from_translation(middle) * turn * Mat4::from_translation(-middle) * self.volume.world_from_unit
     }
 
     /// A painting of it.
@@ -121,7 +118,11 @@ impl Exhibit {
 /// Settings of a painting of a style.
 pub fn settings(style: PainterlyStyle, source_size: [u32; 2]) -> PaintingSettings {
     PaintingSettings {
-        strokes: StrokeSettings { capacity: 20_000, density_step: 2, ..StrokeSettings::new(source_size, SIZE) },
+        strokes: StrokeSettings {
+            capacity: 20_000,
+            density_step: 2,
+            ..StrokeSettings::new(source_size, SIZE)
+        },
         style,
         jitter: Jitter::None,
         canvas: Canvas::new(Vec3::new(0.9, 0.8, 0.7), 0.5),

@@ -2,7 +2,9 @@
 //! The named figures of the system `painterly`: ray casting of iso-surfaces; strokes on them lie in files of their own.
 
 use super::painterly_strokes::Head;
-use super::{Quality, Row, Work, figure, interleaved, painterly_stroke_costs, painterly_strokes, ratio, time};
+use super::{
+    Quality, Row, Work, figure, interleaved, painterly_stroke_costs, painterly_strokes, ratio, time,
+};
 use crate::command::{CommandError, progress};
 use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
 use crate::data::{Volume, marschner_lobb, volume_from_bytes};

@@ -106,11 +106,8 @@ pub(super) fn rows(gpu: &Gpu, shaders: &Shaders, head: &Head) -> Result<Vec<Row>
     let plain = Texture::target(gpu, SIZE, FORMAT);
     let drawn = interleaved(gpu, &[draw, &|encoder| quads.draw(encoder, &plain)], SAMPLES)?;
     let difference = mean_absolute(&painted.read(gpu)?, &plain.read(gpu)?);
-    let quality = Quality {
-        metric: "mean difference of the two pictures",
-        error: difference,
-        baseline_error: 0.0,
-    };
+    let quality =
+        Quality { metric: "mean difference of the two pictures", error: difference, baseline_error: 0.0 };
     let over = ratio(SYSTEM, "draw_over_plain_quads", &drawn[0], &drawn[1], "lower", Some(quality));
 
     let upkeep: Work<'_> = &|encoder| {
@@ -142,7 +139,8 @@ impl Quads {
         let composed = with_baselines(shaders)
             .compose_with("baselines/plain_quads", &airlight_validate::Definitions::new())
             .map_err(CommandError::failure)?;
-        let attributes = wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Uint32];
+        let attributes =
+            wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Uint32];
         let stages = RenderStages {
             vertex: "vertex_quad",
             fragment: Some("fragment_quad"),
@@ -204,8 +202,7 @@ fn corner_bytes(stroke: &Stroke, corner: u32, strokes: &Strokes) -> Vec<u8> {
     let tint = stroke.color * (1.0 + style.color_variation * own_variation(stroke.hash)) * stroke.opacity;
     let count = strokes.brushes().count();
     let brush = style.layers()[stroke.layer as usize].brush.unwrap_or((stroke.hash & 0xffff) % count);
-    let numbers =
-        [place.x, place.y, coordinates.x, coordinates.y, tint.x, tint.y, tint.z, stroke.opacity];
+    let numbers = [place.x, place.y, coordinates.x, coordinates.y, tint.x, tint.y, tint.z, stroke.opacity];
     numbers.iter().flat_map(|number| number.to_le_bytes()).chain(brush.to_le_bytes()).collect()
 }
 

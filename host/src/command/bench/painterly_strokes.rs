@@ -8,8 +8,8 @@ use crate::command::CommandError;
 use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
 use crate::data::Volume;
 use crate::painterly::{
-    Brushes, Canvas, IsoSettings, IsoTargets, IsoVolume, Painting, PaintingFrame, PaintingSettings,
-    PainterlyStyle, STYLES, Stroke, StrokeSettings, StrokeState, SurfaceLighting, Transfer, parse_style,
+    Brushes, Canvas, IsoSettings, IsoTargets, IsoVolume, PainterlyStyle, Painting, PaintingFrame,
+    PaintingSettings, STYLES, Stroke, StrokeSettings, StrokeState, SurfaceLighting, Transfer, parse_style,
 };
 use crate::{Gpu, Shaders};
 use airlight_tests::linear;
@@ -200,11 +200,7 @@ fn areas(gpu: &Gpu, targets: &IsoTargets, style: &PainterlyStyle) -> Result<[f64
 
 /// Of each layer the mean of its density as a share of the way from one bound to the other, and how many of the tiles that it
 /// covers a quarter of lie between them.
-fn densities(
-    gpu: &Gpu,
-    painting: &Painting<'_>,
-    style: &PainterlyStyle,
-) -> Result<Vec<Row>, CommandError> {
+fn densities(gpu: &Gpu, painting: &Painting<'_>, style: &PainterlyStyle) -> Result<Vec<Row>, CommandError> {
     let density = &painting.strokes().density;
     let found = density.read(gpu)?;
     let [width, height, _] = density.size().map(|side| side as usize);
