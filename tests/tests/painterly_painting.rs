@@ -15,16 +15,18 @@ mod surfaces;
 
 use airlight::Texture;
 use airlight::data::{Volume, sphere_field};
-use airlight::painterly::{IsoSettings, IsoTargets, PainterlyStyle, Painting, Stroke, StrokeState};
+use airlight::painterly::{
+    IsoFrame, IsoRaycast, IsoSettings, IsoTargets, PainterlyStyle, Painting, Stroke, StrokeState,
+};
 use airlight_tests::error::mean_absolute;
 use airlight_tests::linear;
 use airlight_tests::reference::painterly::strokes::layer;
 use airlight_tests::reference::painterly::{Solid, classify, trilinear};
 use glam::{Mat4, Vec3};
-use gpu::{Random, gpu, matrix};
+use gpu::{Random, gpu, matrix, shaders};
 use painted::{Exhibit, SIZE, paint, place, settings, staying, style};
 use std::collections::HashMap;
-use surfaces::{RAMP, head, reference_camera};
+use surfaces::{PLAIN, RAMP, head, reference_camera};
 
 const HEAD: [[f32; 4]; 4] = [[0.2, 0.1, 0.1, 0.0], [0.9, 0.7, 0.6, 0.25], [1.0, 0.9, 0.8, 1.0], [1.0; 4]];
 
@@ -257,6 +259,18 @@ fn another_iso_value_needs_no_other_ranges() {
     paint(&mut new, &exhibit.frame(SIZE, 0));
     assert!(seen(&new) == changed, "as if it had always been so");
     assert!(changed != first);
+
+    // And as if nothing was ever passed over.
+    let pass = IsoRaycast::new(gpu(), shaders(), PLAIN).unwrap();
+    let bound = pass.bind(gpu(), &exhibit.uploaded, &exhibit.transfer, SIZE).unwrap();
+    let still = IsoFrame::still(exhibit.frame(SIZE, 0).camera, exhibit.posed(0));
+    pass.set(gpu(), &bound, &exhibit.uploaded, &still, &exhibit.surface, &exhibit.lighting).unwrap();
+    let mut encoder = gpu().encoder();
+    pass.record(&mut encoder, &bound);
+    gpu().submit(encoder).unwrap();
+    let IsoTargets { color, surface, flow, distance, .. } = &bound.targets;
+    let plain = [color, surface, flow, distance].map(|texture| texture.read_words(gpu()).unwrap());
+    assert!(changed == plain);
 }
 
 /// A colour of a texture of colours, straight between texels, clamped at its edge.

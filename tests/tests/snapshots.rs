@@ -269,7 +269,10 @@ fn painterly_torus() {
     let style = PainterlyStyle { orientation: Orientation::Curvature, ..style };
     let mut painting = exhibit.painting(painted::settings(style, source));
     for number in 0..4 {
-        painted::paint(&mut painting, &exhibit.frame(source, number));
+        let mut frame = exhibit.frame(source, number);
+        // The first strokes are there at once.
+        frame.seconds = if number == 1 { 1.0 } else { frame.seconds };
+        painted::paint(&mut painting, &frame);
     }
     let targets = painting.targets();
     let strokes = painting.strokes();
