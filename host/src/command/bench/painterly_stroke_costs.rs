@@ -7,8 +7,7 @@ use super::painterly_strokes::{Head, SIZE};
 use super::{Quality, Row, Work, figure, interleaved, ratio, time};
 use crate::command::CommandError;
 use crate::painterly::{
-    Brushes, IsoBound, IsoForm, IsoFrame, IsoRaycast, PainterlyStyle, SolidBricks, Stroke, StrokeSettings,
-    StrokeStep, StrokeTargets, Strokes,
+    Brushes, IsoBound, PainterlyStyle, Stroke, StrokeSettings, StrokeStep, StrokeTargets, Strokes,
 };
 use crate::pass::{Bound, Pass, RenderStages};
 use crate::{Buffer, Gpu, Shaders, Texture};
@@ -18,7 +17,7 @@ use std::cell::{Cell, RefCell};
 
 /// Poses of a pendulum, a frame's turn apart: what turns on would need rays in every frame.
 const POSES: u32 = 5;
-/// Frames in which strokes settle, and those of them that take a second, so that strokes are there at once.
+/// Frames in which strokes settle.
 const SETTLING: u32 = 40;
 /// Samples of each piece of work.
 const SAMPLES: usize = 7;
@@ -36,8 +35,8 @@ impl<'a> Swing<'a> {
     fn new(gpu: &Gpu, shaders: &Shaders, head: &'a Head) -> Result<Self, CommandError> {
         let brushes = Brushes::procedural(gpu).map_err(CommandError::failure)?;
         let settings = StrokeSettings::new(SIZE, SIZE);
-        let strokes = Strokes::new(gpu, shaders, Head::style()?, brushes, settings);
-        let poses: Result<_, _> = (0..POSES).map(|pose| cast(gpu, shaders, head, pose)).collect();
+        let strokes = Strokes::new(gpu, shaders, head.style(gpu, shaders)?, brushes, settings);
+        let poses: Result<_, _> = (0..POSES).map(|pose| head.cast(gpu, shaders, pose)).collect();
         let swing = Self {
             head,
             poses: poses?,
@@ -74,23 +73,6 @@ impl<'a> Swing<'a> {
         let mut strokes = self.strokes.borrow_mut();
         strokes.record(gpu, encoder, &targets, &step).map_err(CommandError::failure)
     }
-}
-
-/// What rays see of a pose.
-fn cast(gpu: &Gpu, shaders: &Shaders, head: &Head, pose: u32) -> Result<IsoBound, CommandError> {
-    let form = IsoForm { skipping: true, ..IsoForm::default() };
-    let pass = IsoRaycast::new(gpu, shaders, form).map_err(CommandError::failure)?;
-    let solid = SolidBricks::new(gpu, shaders).map_err(CommandError::failure)?;
-    let bound = pass.bind(gpu, &head.uploaded, &head.transfer, SIZE).map_err(CommandError::failure)?;
-    let frame = IsoFrame::still(head.camera, head.posed(pose));
-    pass.set(gpu, &bound, &head.uploaded, &frame, &head.settings, &head.lighting)
-        .map_err(CommandError::failure)?;
-    let mut encoder = gpu.encoder();
-    let ranges = solid.ranges(gpu, &mut encoder, &head.uploaded).map_err(CommandError::failure)?;
-    solid.record(gpu, &mut encoder, &ranges, &head.transfer, &bound).map_err(CommandError::failure)?;
-    pass.record(&mut encoder, &bound);
-    gpu.submit(encoder)?;
-    Ok(bound)
 }
 
 /// Every named ratio.

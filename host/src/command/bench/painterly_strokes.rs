@@ -8,8 +8,9 @@ use crate::command::CommandError;
 use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
 use crate::data::Volume;
 use crate::painterly::{
-    Brushes, Canvas, IsoSettings, IsoTargets, IsoVolume, PainterlyStyle, Painting, PaintingFrame,
-    PaintingSettings, STYLES, Stroke, StrokeSettings, StrokeState, SurfaceLighting, Transfer, parse_style,
+    Brushes, Canvas, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoTargets, IsoVolume,
+    PainterlyStyle, Painting, PaintingFrame, PaintingSettings, STYLES, SolidBricks, Stroke, StrokeSettings,
+    StrokeState, SurfaceLighting, Transfer, parse_style,
 };
 use crate::{Gpu, Shaders};
 use airlight_tests::linear;
@@ -29,8 +30,6 @@ const FRAMES: u32 = 60;
 const ALONE: u32 = 10;
 /// A turn in a frame, degrees.
 const TURN: f32 = 1.0;
-/// Gradients of the skin are a tenth of the range a voxel and less: times this each layer of the style has its share of them.
-const GRADIENT_SCALE: f32 = 2.0;
 /// Pixels along the side of a tile that density is judged in.
 const TILE: usize = 32;
 
@@ -82,14 +81,42 @@ impl Head {
             * self.volume.world_from_unit
     }
 
-    /// The style `dense`, for gradients as the head's skin has them.
-    pub(super) fn style() -> Result<PainterlyStyle, CommandError> {
+    /// The style `dense`, with thresholds that give each layer a third of what is seen of the head: gradients of skin lie closer
+    /// together than those of the style.
+    pub(super) fn style(&self, gpu: &Gpu, shaders: &Shaders) -> Result<PainterlyStyle, CommandError> {
         let (name, text) = STYLES
             .iter()
             .find(|(name, _)| *name == "dense")
             .ok_or_else(|| CommandError::failure("there is no style `dense`"))?;
-        let style = parse_style(name, text).map_err(CommandError::failure)?;
-        Ok(PainterlyStyle { gradient_scale: GRADIENT_SCALE, ..style })
+        let mut style = parse_style(name, text).map_err(CommandError::failure)?;
+        let targets = self.cast(gpu, shaders, 0)?.targets;
+        let (surface, distance) = (targets.surface.read(gpu)?, targets.distance.read(gpu)?);
+        let seen = surface.chunks_exact(4).zip(&distance).filter(|(_, distance)| **distance >= 0.0);
+        let mut magnitudes: Vec<f32> = seen.map(|(texel, _)| texel[3]).collect();
+        magnitudes.sort_unstable_by(f32::total_cmp);
+        let third = |of: usize| magnitudes.get(of * magnitudes.len() / 3).copied();
+        let (Some(first), Some(second)) = (third(1), third(2)) else {
+            return Err(CommandError::failure("the head is not seen"));
+        };
+        (style.coarse.threshold, style.medium.threshold) = (first, second);
+        Ok(style)
+    }
+
+    /// What rays see in a frame.
+    pub(super) fn cast(&self, gpu: &Gpu, shaders: &Shaders, frame: u32) -> Result<IsoBound, CommandError> {
+        let form = IsoForm { skipping: true, ..IsoForm::default() };
+        let pass = IsoRaycast::new(gpu, shaders, form).map_err(CommandError::failure)?;
+        let solid = SolidBricks::new(gpu, shaders).map_err(CommandError::failure)?;
+        let bound = pass.bind(gpu, &self.uploaded, &self.transfer, SIZE).map_err(CommandError::failure)?;
+        let still = IsoFrame::still(self.camera, self.posed(frame));
+        pass.set(gpu, &bound, &self.uploaded, &still, &self.settings, &self.lighting)
+            .map_err(CommandError::failure)?;
+        let mut encoder = gpu.encoder();
+        let ranges = solid.ranges(gpu, &mut encoder, &self.uploaded).map_err(CommandError::failure)?;
+        solid.record(gpu, &mut encoder, &ranges, &self.transfer, &bound).map_err(CommandError::failure)?;
+        pass.record(&mut encoder, &bound);
+        gpu.submit(encoder)?;
+        Ok(bound)
     }
 }
 
@@ -109,7 +136,7 @@ fn resampled(volume: &Volume, side: u32) -> Volume {
 
 /// Every named figure.
 pub(super) fn rows(gpu: &Gpu, shaders: &Shaders, head: &Head) -> Result<Vec<Row>, CommandError> {
-    let style = Head::style()?;
+    let style = head.style(gpu, shaders)?;
     let brushes = Brushes::procedural(gpu).map_err(CommandError::failure)?;
     let shown = Brushes::procedural(gpu).map_err(CommandError::failure)?;
     let settings = PaintingSettings {
