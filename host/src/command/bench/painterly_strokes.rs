@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Strokes on a head that turns: how many there are, how densely they lie, whether they keep to their points, and how many
-//! outlive a turn.
+//! outlive a turn. From this near the head covers a quarter of the picture.
 
 use super::painterly::{SYSTEM, asset, rising};
 use super::{Row, figure};
@@ -54,7 +54,7 @@ impl Head {
         let view = PerspectiveView {
             eye: middle + diagonal * Vec3::new(0.45, 0.2, 0.85),
             target: middle,
-            field_of_view: 30.0,
+            field_of_view: 38.0,
             near: 0.01 * diagonal,
             far: 10.0 * diagonal,
             depth: DepthRange::Forward,
