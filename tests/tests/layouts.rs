@@ -271,8 +271,8 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         orientation_rate: f32, size_rate: f32, opacity_rate: f32, fade_out_rate: f32, hidden_rate: f32, reserved: f32,
     });
     twin!(twins: StrokeCounts {
-        vertices: u32, instances: u32, first_vertex: u32, first_instance: u32, born: u32, dropped: u32,
-        dropped_in_all: u32, reserved: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
+        vertices: u32, draws: u32, first_vertex: u32, first_instance: u32, born: u32, dropped: u32,
+        dropped_in_all: u32, instances: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
     });
     twins
 }

@@ -31,9 +31,9 @@ struct Corner {
 }
 
 @vertex
-fn vertex_density(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Corner {
-    let stroke = strokes[min(instance, arrayLength(&strokes) - 1u)];
-    let corner = quad_corner(vertex);
+fn vertex_density(@builtin(vertex_index) vertex: u32) -> Corner {
+    let stroke = strokes[min(vertex / 6u, arrayLength(&strokes) - 1u)];
+    let corner = quad_corner(vertex % 6u);
     let place = corner_position(stroke, corner, frame.picture_size);
     let fades_to = target_opacity(style, stroke.layer, stroke.state);
     let density = density_of_stroke(style.density_unit, stroke.opacity, fades_to, style.anticipation, 1.0);
