@@ -19,7 +19,7 @@ use airlight::stylize::{
 use airlight::transmittance::{MediumLighting, SplatTarget};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat4, UVec4, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
@@ -97,6 +97,19 @@ impl Sentinel for Vec4 {
     }
     fn words() -> Vec<(u32, u32)> {
         vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits()), (12, 4.5_f32.to_bits())]
+    }
+}
+
+impl Sentinel for UVec4 {
+    const TYPE: &'static str = "vec4<u32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1, 2, 3, 4)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1), (4, 2), (8, 3), (12, 4)]
     }
 }
 
@@ -273,6 +286,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: StrokeCounts {
         vertices: u32, draws: u32, first_vertex: u32, first_instance: u32, born: u32, dropped: u32,
         dropped_in_all: u32, instances: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
+        density_draw: UVec4,
     });
     twins
 }

@@ -157,6 +157,8 @@ struct StrokeCounts {
     fine: u32,
     /// Frames that were counted.
     frames: u32,
+    /// Arguments of the indirect draw of densities: vertices of all strokes, 3 each; 1; 0; 0.
+    density_draw: vec4<u32>,
 }
 
 /// The number of a layer, 0..2, out of three.

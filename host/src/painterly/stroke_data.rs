@@ -2,7 +2,7 @@
 //! What host and shaders share of strokes: the structs of `painterly/stroke`.
 
 use encase::ShaderType;
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, UVec4, Vec2, Vec3};
 
 /// Words of a stroke in its buffer.
 pub(super) const STROKE_WORDS: usize = 16;
@@ -114,6 +114,8 @@ pub struct StrokeCounts {
     pub fine: u32,
     /// Frames that were counted.
     pub frames: u32,
+    /// Arguments of the indirect draw of densities: vertices of all strokes, 3 each; 1; 0; 0.
+    pub density_draw: UVec4,
 }
 
 impl StrokeCounts {
@@ -132,6 +134,7 @@ impl StrokeCounts {
             medium: word(9),
             fine: word(10),
             frames: word(11),
+            density_draw: UVec4::from([12, 13, 14, 15].map(word)),
         }
     }
 

@@ -19,6 +19,8 @@ const CHUNK: u32 = 32;
 const BLOCK: [u32; 2] = [8, 4];
 /// Columns and rows of a workgroup over blocks.
 const TILE: [u32; 2] = [8, 8];
+/// Bytes before the arguments of the draw of densities among the counts.
+const DENSITY_DRAW: u64 = 48;
 /// Bytes of a stroke.
 const STROKE_BYTES: u64 = 4 * STROKE_WORDS as u64;
 
@@ -223,7 +225,8 @@ impl Strokes {
         passes.update.dispatch_groups(encoder, &bound, "update_strokes", of_strokes)?;
 
         let bound = passes.density.bind_known(gpu, &now)?;
-        self.draw_indirect(encoder, &passes.density, &bound, &self.density, Some(wgpu::Color::TRANSPARENT));
+        let none = Some(wgpu::Color::TRANSPARENT);
+        self.draw_indirect(encoder, &passes.density, &bound, &self.density, none, DENSITY_DRAW);
 
         let bound = passes.population.bind_known(gpu, &now)?;
         passes.population.dispatch_groups(encoder, &bound, "thin_strokes", of_strokes)?;
@@ -267,7 +270,7 @@ impl Strokes {
             ("brush_sampler", (&self.brushes.sampler).into()),
         ];
         let bound = self.passes.draw.bind(gpu, &resources)?;
-        self.draw_indirect(encoder, &self.passes.draw, &bound, picture, None);
+        self.draw_indirect(encoder, &self.passes.draw, &bound, picture, None, 0);
         Ok(())
     }
 
@@ -315,6 +318,7 @@ impl Strokes {
         bound: &crate::pass::Bound,
         target: &Texture,
         clear: Option<wgpu::Color>,
+        arguments: u64,
     ) {
         let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
         let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -328,7 +332,7 @@ impl Strokes {
             ..Default::default()
         });
         pass.set(&mut render, bound);
-        render.draw_indirect(&self.counts.raw, 0);
+        render.draw_indirect(&self.counts.raw, arguments);
     }
 
     fn next_frame(&self, step: &StrokeStep) -> Result<StrokeFrame, StrokeError> {

@@ -95,6 +95,7 @@ fn count_strokes() {
     counts.instances = fit;
     counts.vertices = 6u * fit;
     counts.draws = 1u;
+    counts.density_draw = vec4<u32>(3u * fit, 1u, 0u, 0u);
     counts.born = fit - min(survivors, fit);
     counts.dropped = all - fit;
     counts.dropped_in_all += all - fit;
