@@ -40,8 +40,8 @@ fn height_of(sheets: Sheets, point: vec3<f32>) -> f32 {
 
 /// Heights at which a sheet begins and ends, metres; `index`: from 0, the sheet nearest to the light.
 fn sheet_heights(sheets: Sheets, index: u32) -> vec2<f32> {
-    let from = sheets.first + f32(index) * sheets.thickness;
-    return vec2<f32>(from, sheets.first + f32(index + 1u) * sheets.thickness);
+    let begin = sheets.first + f32(index) * sheets.thickness;
+    return vec2<f32>(begin, sheets.first + f32(index + 1u) * sheets.thickness);
 }
 
 /// The sheet in which a height lies; of what lies outside the nearest.

@@ -27,6 +27,16 @@ struct SplatVolume {
     threshold: f32,
 }
 
+/// Voxels or splats that are looked at together. 16 bytes.
+struct SplatBatch {
+    /// Number of the first.
+    first: u32,
+    /// How many.
+    count: u32,
+    reserved_a: u32,
+    reserved_b: u32,
+}
+
 /// Where voxel `index` lies in voxel space.
 fn voxel_place(volume: SplatVolume, index: u32) -> vec3<f32> {
     let width = max(volume.size.x, 1u);

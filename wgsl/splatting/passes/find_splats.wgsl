@@ -10,17 +10,7 @@
 // binding splats: out of gather_splats, the splats.
 
 #import airlight::core::finite::is_finite
-#import airlight::splatting::splat::{Splat, SplatVolume}
-
-/// Voxels that are looked at together. 16 bytes.
-struct SplatBatch {
-    /// Number of the first.
-    first: u32,
-    /// How many.
-    count: u32,
-    reserved_a: u32,
-    reserved_b: u32,
-}
+#import airlight::splatting::splat::{Splat, SplatVolume, SplatBatch}
 
 @group(#{GROUP}) @binding(0) var<uniform> volume: SplatVolume;
 @group(#{GROUP}) @binding(1) var<uniform> batch: SplatBatch;

@@ -6,6 +6,7 @@
 // binding volume: the volume.
 // binding sheets: the sheets.
 // binding kernel: the kernel.
+// binding batch: how many splats there are.
 // binding splats: the splats.
 // binding keys: out of first_sheets, the first sheet of each splat; for sheet_ranges sorted.
 // binding order: out of first_sheets, the number of each splat, to be sorted along.
@@ -15,7 +16,7 @@
 
 #import airlight::splatting::footprint::Kernel
 #import airlight::splatting::sheets::{Sheets, height_of, sheet_at}
-#import airlight::splatting::splat::{Splat, SplatVolume, voxel_place, reach_along}
+#import airlight::splatting::splat::{Splat, SplatVolume, SplatBatch, voxel_place, reach_along}
 
 /// Arguments of an indirect draw. 16 bytes.
 struct Draw {
@@ -30,6 +31,7 @@ struct Draw {
 @group(#{GROUP}) @binding(0) var<uniform> volume: SplatVolume;
 @group(#{GROUP}) @binding(1) var<uniform> sheets: Sheets;
 @group(#{GROUP}) @binding(2) var<uniform> kernel: Kernel;
+@group(#{GROUP}) @binding(9) var<uniform> batch: SplatBatch;
 @group(#{GROUP}) @binding(3) var<storage, read> splats: array<Splat>;
 @group(#{GROUP}) @binding(4) var<storage, read_write> keys: array<u32>;
 @group(#{GROUP}) @binding(5) var<storage, read_write> order: array<u32>;
@@ -40,7 +42,7 @@ struct Draw {
 @compute @workgroup_size(256)
 fn first_sheets(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let index = id.y * groups.x * 256u + id.x;
-    if index >= min(arrayLength(&splats), min(arrayLength(&keys), arrayLength(&order))) {
+    if index >= min(batch.count, min(arrayLength(&splats), min(arrayLength(&keys), arrayLength(&order)))) {
         return;
     }
     let middle = (volume.world_from_voxel * vec4<f32>(voxel_place(volume, splats[index].voxel), 1.0)).xyz;
@@ -52,7 +54,7 @@ fn first_sheets(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
 /// How many sorted keys are below `key`.
 fn keys_below(key: u32) -> u32 {
     var low = 0u;
-    var high = arrayLength(&keys);
+    var high = min(batch.count, arrayLength(&keys));
     while low < high {
         let middle = (low + high) / 2u;
         let below = keys[middle] < key;
