@@ -18,7 +18,8 @@ struct Sheets {
     count: u32,
     /// Sheets that one splat reaches at most.
     span: u32,
-    reserved: u32,
+    /// 1 where the sheet nearest to the light is nearest to the eye as well, 0 where it is the farthest.
+    front_to_back: u32,
 }
 
 /// A sheet that is drawn. 16 bytes.
@@ -53,4 +54,20 @@ fn sheet_at(sheets: Sheets, height: f32) -> u32 {
 /// Metres that a ray of unit `direction` passes within a sheet.
 fn metres_in_sheet(sheets: Sheets, direction: vec3<f32>) -> f32 {
     return sheets.thickness / max(abs(dot(sheets.normal, direction)), LEAST_COSINE);
+}
+
+/// A value as it is added up in an rgba16float target, in three parts: multiples of 2^-9, of 2^-14 in units of 2^-9, and of 2^-19 in
+/// units of 2^-14. Half floats hold the sums of these exactly, up to 4 in all, so that neither the order of splats nor how
+/// blending rounds makes a difference.
+fn in_exact_parts(value: f32) -> vec4<f32> {
+    let coarse = floor(value * 512.0 + 0.5) / 512.0;
+    let rest = (value - coarse) * 512.0;
+    let medium = floor(rest * 32.0 + 0.5) / 32.0;
+    let fine = floor((rest - medium) * 1024.0 + 0.5) / 32.0;
+    return vec4<f32>(coarse, medium, fine, 0.0);
+}
+
+/// The mean value of a texel of a sheet, from 0 up: the sum of values that were added by `in_exact_parts`.
+fn sheet_mean(texel: vec4<f32>) -> f32 {
+    return max(dot(texel.xyz, vec3<f32>(1.0, 1.0 / 512.0, 1.0 / 16384.0)), 0.0);
 }

@@ -14,5 +14,5 @@ mod splats;
 pub use error::SplattingError;
 pub use kernel::Kernel;
 pub use picture::{Shading, SheetFrame, SheetLighting, SheetPicture, SheetSettings};
-pub use sheets::{SheetNumber, Sheets};
+pub use sheets::{SheetNumber, SheetTargets, Sheets};
 pub use splats::{SplatBatch, SplatVolume, Splats};

@@ -7,12 +7,12 @@ use crate::pass::{Bound, Pass, PassError, RenderStages};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
-use wgpu::{BlendComponent, BlendFactor, BlendOperation, BlendState, TextureFormat};
+use wgpu::TextureFormat;
 
 /// Threads of a workgroup over voxels and splats.
 pub(super) const GROUP: u32 = 256;
 /// Format of mean values.
-pub(super) const MEANS: TextureFormat = TextureFormat::R16Float;
+pub(super) const MEANS: TextureFormat = TextureFormat::Rgba16Float;
 /// Format of pictures and of the shadow buffer.
 pub(super) const LIGHT: TextureFormat = TextureFormat::Rgba16Float;
 
@@ -22,24 +22,11 @@ pub(super) fn rows_of_groups(groups: u32) -> [u32; 3] {
     [row, groups.div_ceil(row), 1]
 }
 
-const fn blend(src_factor: BlendFactor, dst_factor: BlendFactor) -> BlendComponent {
-    BlendComponent { src_factor, dst_factor, operation: BlendOperation::Add }
-}
-
-/// Alphas are transmittances, and multiply.
-const THROUGH: BlendComponent = blend(BlendFactor::Zero, BlendFactor::SrcAlpha);
-const FRONT_TO_BACK: BlendState =
-    BlendState { color: blend(BlendFactor::DstAlpha, BlendFactor::One), alpha: THROUGH };
-const BACK_TO_FRONT: BlendState =
-    BlendState { color: blend(BlendFactor::One, BlendFactor::SrcAlpha), alpha: THROUGH };
-const DIMMED: BlendState = BlendState { color: blend(BlendFactor::Zero, BlendFactor::Src), alpha: THROUGH };
-
 pub(super) struct Passes {
     pub(super) order: Pass,
     pub(super) splat: Pass,
-    pub(super) dim: Pass,
-    pub(super) front_to_back: Pass,
-    pub(super) back_to_front: Pass,
+    pub(super) light: Pass,
+    pub(super) composite: Pass,
 }
 
 impl Passes {
@@ -49,6 +36,7 @@ impl Passes {
         shading: Shading,
         scanning: bool,
     ) -> Result<Self, SplattingError> {
+        let shading = if shading == Shading::Phong { "phong" } else { "default" };
         let stages = |vertex: &'static str, fragment: &'static str, target| RenderStages {
             vertex,
             fragment: Some(fragment),
@@ -65,30 +53,24 @@ impl Passes {
             if set { none.flag(name) } else { none }
         };
         let splat = composed("splatting/splat_sheet", &flag("SCANNING", scanning))?;
-        let light = composed("splatting/light_sheet", &Definitions::new())?;
-        let composite = composed("splatting/composite_sheet", &flag("PHONG", shading == Shading::Phong))?;
-        let over = stages("vertex_picture", "fragment_composite_sheet", LIGHT);
-        let dim = stages("vertex_picture", "fragment_light_sheet", LIGHT);
         Ok(Self {
             order: Pass::compute(gpu, shaders, "splatting/order_splats", "default")?,
             splat: Pass::additive(gpu, &splat, &stages("vertex_splat", "fragment_splat", MEANS), 1)?,
-            dim: Pass::blended(gpu, &light, &dim, DIMMED, 1)?,
-            front_to_back: Pass::blended(gpu, &composite, &over, FRONT_TO_BACK, 1)?,
-            back_to_front: Pass::blended(gpu, &composite, &over, BACK_TO_FRONT, 1)?,
+            light: Pass::compute(gpu, shaders, "splatting/light_sheet", "default")?,
+            composite: Pass::compute(gpu, shaders, "splatting/composite_sheet", shading)?,
         })
     }
 }
 
-/// Draws into `target`: what was bound, with arguments of which those of `sheet` count. `clear`: or keep what is there.
+/// Draws into `target`, cleared: what was bound, with arguments of which those of `sheet` count.
 pub(super) fn draw<'a>(
     encoder: &mut wgpu::CommandEncoder,
     target: &Texture,
-    clear: Option<wgpu::Color>,
     pass: &Pass,
     sheet: u32,
     drawn: impl IntoIterator<Item = (&'a Bound, &'a Buffer)>,
 ) {
-    let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
+    let load = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
     let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("splatting"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

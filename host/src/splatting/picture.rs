@@ -4,7 +4,7 @@
 use super::error::in_range;
 use super::passes::{GROUP, LIGHT, MEANS, Passes, draw, rows_of_groups};
 use super::splats::Batch;
-use super::{Kernel, SheetNumber, Sheets, Splats, SplattingError};
+use super::{Kernel, SheetNumber, SheetTargets, Sheets, Splats, SplattingError};
 use crate::core::{Camera, DIRECTIONAL, Light, Sort};
 use crate::gpu::Gpu;
 use crate::painterly::Transfer;
@@ -12,7 +12,10 @@ use crate::pass::{Bound, Resource};
 use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
 use encase::ShaderType;
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
+
+/// Columns and rows of a workgroup over pixels.
+const TILE: [u32; 2] = [16, 8];
 
 /// What the medium does with light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -140,7 +143,7 @@ struct Step {
     eye: Vec<Bound>,
     light: Vec<Bound>,
     composite: Bound,
-    dim: Bound,
+    left: Bound,
 }
 
 /// A volume drawn sheet by sheet.
@@ -151,13 +154,13 @@ pub struct SheetPicture<'a> {
     sort: Sort,
     uniforms: Uniforms,
     sorted: Vec<SortedBatch>,
-    /// Of each sheet, a triangle over the picture where it has splats.
-    pictures: Buffer,
+    /// Of each sheet, groups over the picture and over the shadow buffer where it has splats.
+    dispatches: Buffer,
+    sum: Buffer,
+    left: Buffer,
     means: [Texture; 3],
     light_means: Texture,
     steps: Vec<Step>,
-    front_to_back: bool,
-    radiance: Vec3,
     /// Linear RGB radiance of the medium, and the transmittance to what lies behind; rgba16float.
     pub picture: Texture,
     /// What is left of the light behind the last sheet, linear RGB; rgba16float.
@@ -206,12 +209,19 @@ impl<'a> SheetPicture<'a> {
             lighting: storage(SheetLighting::min_size().get()),
         };
         // Where nothing is sorted, every sheet draws everything.
-        let indirect = |all: [u32; 2]| {
-            let each = if settings.scanning { [all[0], all[1], 0, 0] } else { [0; 4] };
-            let bytes: Vec<u8> = each.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let indirect = |all: &[u32]| {
+            let word = |word: &u32| if settings.scanning { *word } else { 0 };
+            let bytes: Vec<u8> = all.iter().flat_map(|all| word(all).to_le_bytes()).collect();
             let bytes = bytes.repeat(settings.count as usize);
             Buffer::with_bytes(gpu, &bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT)
         };
+        let groups = |[width, height]: [u32; 2]| [width.div_ceil(TILE[0]), height.div_ceil(TILE[1])];
+        let [picture, shadow] = [size, settings.light_size].map(groups);
+        let targets = Buffer::uniform(
+            gpu,
+            &SheetTargets { picture: UVec2::from(picture), shadow: UVec2::from(shadow) },
+        );
+        let vectors = |[width, height]: [u32; 2]| storage(16 * u64::from(width) * u64::from(height));
         let mut made = Self {
             splats,
             settings,
@@ -219,17 +229,17 @@ impl<'a> SheetPicture<'a> {
             sort: Sort::new(gpu, shaders)?,
             uniforms,
             sorted: Vec::new(),
-            pictures: indirect([3, 1]),
+            dispatches: indirect(&[picture[0], picture[1], 1, 0, shadow[0], shadow[1], 1, 0]),
+            sum: vectors(size),
+            left: vectors(settings.light_size),
             means: [0; 3].map(|_| Texture::target(gpu, size, MEANS)),
             light_means: Texture::target(gpu, settings.light_size, MEANS),
             steps: Vec::new(),
-            front_to_back: true,
-            radiance: Vec3::ONE,
-            picture: Texture::target(gpu, size, LIGHT),
-            shadow: Texture::target(gpu, settings.light_size, LIGHT),
+            picture: Texture::storage(gpu, size, LIGHT),
+            shadow: Texture::storage(gpu, settings.light_size, LIGHT),
         };
         for batch in &splats.batches {
-            let (ranges, draws) = (storage(8 * u64::from(settings.count)), indirect([6, batch.count]));
+            let (ranges, draws) = (storage(8 * u64::from(settings.count)), indirect(&[6, batch.count, 0, 0]));
             let resources = [
                 ("volume", (&splats.uniform).into()),
                 ("sheets", (&made.uniforms.sheets).into()),
@@ -240,7 +250,8 @@ impl<'a> SheetPicture<'a> {
                 ("order", (&batch.order).into()),
                 ("ranges", (&ranges).into()),
                 ("draws", (&draws).into()),
-                ("pictures", (&made.pictures).into()),
+                ("dispatches", (&made.dispatches).into()),
+                ("targets", (&targets).into()),
             ];
             let order = made.passes.order.bind(gpu, &resources)?;
             made.sorted.push(SortedBatch { ranges, draws, order });
@@ -294,12 +305,15 @@ impl<'a> SheetPicture<'a> {
             ("shadow", (&self.shadow).into()),
             ("transfer", (&transfer.texture).into()),
             ("linear_sampler", sampler.into()),
+            ("sum", (&self.sum).into()),
+            ("picture", (&self.picture).into()),
+            ("left", (&self.left).into()),
         ];
         Ok(Step {
             eye: splat(camera)?,
             light: splat(light_camera)?,
-            composite: self.passes.front_to_back.bind_known(gpu, &all)?,
-            dim: self.passes.dim.bind_known(gpu, &all)?,
+            composite: self.passes.composite.bind_known(gpu, &all)?,
+            left: self.passes.light.bind_known(gpu, &all)?,
         })
     }
 
@@ -307,7 +321,7 @@ impl<'a> SheetPicture<'a> {
     ///
     /// # Errors
     /// [`SplattingError`].
-    pub fn set(&mut self, gpu: &Gpu, frame: &SheetFrame) -> Result<Sheets, SplattingError> {
+    pub fn set(&self, gpu: &Gpu, frame: &SheetFrame) -> Result<Sheets, SplattingError> {
         frame.lighting.check()?;
         let [width, height, _] = self.picture.size();
         let camera = [frame.camera.viewport.x as u32, frame.camera.viewport.y as u32];
@@ -321,14 +335,12 @@ impl<'a> SheetPicture<'a> {
         let reach = |normal| self.splats.volume.reach_along(normal, radius);
         let light = frame.light_direction(middle);
         let sheets = Sheets::between(view, light, self.settings.count, corners, reach)?;
-        self.front_to_back = sheets.front_to_back(view);
         let to = &self.uniforms;
         to.camera.write(gpu, &frame.camera);
         to.light_camera.write(gpu, &frame.light_camera(self.settings.light_size));
         to.light.write(gpu, &frame.light);
         to.sheets.write(gpu, &sheets);
         to.lighting.write(gpu, &frame.lighting);
-        self.radiance = frame.light.radiance;
         Ok(sheets)
     }
 
@@ -341,34 +353,33 @@ impl<'a> SheetPicture<'a> {
         if !self.settings.scanning {
             self.order(gpu, encoder)?;
         }
-        let nothing = Some(wgpu::Color::TRANSPARENT);
-        let clear = |encoder: &mut wgpu::CommandEncoder, target: &Texture, color| {
-            draw(encoder, target, color, &self.passes.dim, 0, None);
-        };
-        clear(encoder, &self.picture, Some(wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 }));
-        clear(encoder, &self.means[2], nothing);
-        let [r, g, b] = self.radiance.as_dvec3().to_array();
-        clear(encoder, &self.shadow, Some(wgpu::Color { r, g, b, a: 1.0 }));
+        encoder.clear_buffer(&self.sum.raw, 0, None);
+        let Passes { splat, light, composite, .. } = &self.passes;
+        let Some(first) = self.steps.first() else { return Ok(()) };
+        let tiles = |[width, height, _]: [u32; 3]| [width.div_ceil(TILE[0]), height.div_ceil(TILE[1]), 1];
+        light.dispatch_groups(encoder, &first.left, "begin_light", tiles(self.shadow.size()))?;
+        draw(encoder, &self.means[2], splat, 0, None);
         self.splat(encoder, 0);
-        let over = if self.front_to_back { &self.passes.front_to_back } else { &self.passes.back_to_front };
         for (index, step) in (0..count).zip(&self.steps) {
             if index + 1 < count {
                 self.splat(encoder, index + 1);
             } else {
-                clear(encoder, &self.means[(index as usize + 1) % 3], nothing);
+                draw(encoder, &self.means[(index as usize + 1) % 3], splat, 0, None);
             }
             let batches = step.light.iter().zip(self.sorted.iter().map(|sorted| &sorted.draws));
-            draw(encoder, &self.light_means, nothing, &self.passes.splat, index, batches);
-            draw(encoder, &self.picture, None, over, index, [(&step.composite, &self.pictures)]);
-            draw(encoder, &self.shadow, None, &self.passes.dim, index, [(&step.dim, &self.pictures)]);
+            draw(encoder, &self.light_means, splat, index, batches);
+            let groups = |part: u64| (&self.dispatches, 32 * u64::from(index) + 16 * part);
+            composite.dispatch_indirect(encoder, &step.composite, "composite_sheet", groups(0))?;
+            light.dispatch_indirect(encoder, &step.left, "light_sheet_left", groups(1))?;
         }
+        composite.dispatch_groups(encoder, &first.composite, "show_sheets", tiles(self.picture.size()))?;
         Ok(())
     }
 
     /// Sorts splats by the first sheet that they reach.
     fn order(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), SplattingError> {
         let count = self.settings.count;
-        encoder.clear_buffer(&self.pictures.raw, 0, None);
+        encoder.clear_buffer(&self.dispatches.raw, 0, None);
         for (batch, sorted) in self.splats.batches.iter().zip(&self.sorted) {
             let groups = rows_of_groups(batch.count.div_ceil(GROUP));
             self.passes.order.dispatch_groups(encoder, &sorted.order, "first_sheets", groups)?;
@@ -384,7 +395,6 @@ impl<'a> SheetPicture<'a> {
         let batches =
             self.steps[index as usize].eye.iter().zip(self.sorted.iter().map(|sorted| &sorted.draws));
         let target = &self.means[index as usize % 3];
-        let nothing = Some(wgpu::Color::TRANSPARENT);
-        draw(encoder, target, nothing, &self.passes.splat, index, batches);
+        draw(encoder, target, &self.passes.splat, index, batches);
     }
 }

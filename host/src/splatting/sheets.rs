@@ -4,7 +4,7 @@
 use super::SplattingError;
 use super::error::in_range;
 use encase::ShaderType;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec2, Vec3};
 
 /// Most sheets.
 const MOST: u32 = 4096;
@@ -22,8 +22,17 @@ pub struct Sheets {
     pub count: u32,
     /// Sheets that one splat reaches at most.
     pub span: u32,
-    /// Padding.
-    pub reserved: u32,
+    /// 1 where the sheet nearest to the light is nearest to the eye as well.
+    pub front_to_back: u32,
+}
+
+/// The uniform `SheetTargets` of `splatting/order_splats`.
+#[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
+pub struct SheetTargets {
+    /// Groups over the picture.
+    pub picture: UVec2,
+    /// Groups over the shadow buffer.
+    pub shadow: UVec2,
 }
 
 /// The uniform `SheetNumber` of `splatting/sheets`.
@@ -71,13 +80,8 @@ impl Sheets {
             thickness: thickness as f32,
             count,
             span: span.min(count),
-            reserved: 0,
+            front_to_back: u32::from(view.dot(light) >= 0.0),
         })
-    }
-
-    /// Whether sheets lie front to back along a view direction.
-    pub fn front_to_back(&self, view: Vec3) -> bool {
-        self.normal.dot(view) >= 0.0
     }
 }
 
@@ -94,7 +98,7 @@ mod tests {
             let view = Vec3::new(sine, -cosine, 0.0);
             let sheets = Sheets::between(view, light, 64, &[Vec3::ZERO, Vec3::ONE], |_| 0.1).unwrap();
             assert!(sheets.normal.dot(light) > 0.707 && sheets.normal.dot(view).abs() > 0.707, "{angle}");
-            assert_eq!(sheets.front_to_back(view), angle <= 90, "{angle}");
+            assert_eq!(sheets.front_to_back == 1, angle <= 90, "{angle}");
         }
     }
 

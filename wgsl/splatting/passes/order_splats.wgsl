@@ -12,7 +12,9 @@
 // binding order: out of first_sheets, the number of each splat, to be sorted along.
 // binding ranges: out of sheet_ranges, of each sheet the first place in the order and how many there are.
 // binding draws: out of sheet_ranges, of each sheet the arguments of an indirect draw of its splats.
-// binding pictures: out of sheet_ranges, of each sheet that has any, the arguments of an indirect draw of one triangle; zeros before.
+// binding targets: groups of the passes over the picture and over the shadow buffer.
+// binding dispatches: out of sheet_ranges, of each sheet that has splats the arguments of an indirect dispatch over the picture, then
+// binding dispatches: of one over the shadow buffer, eight words; zeros before.
 
 #import airlight::splatting::footprint::Kernel
 #import airlight::splatting::sheets::{Sheets, height_of, sheet_at}
@@ -28,6 +30,14 @@ struct Draw {
     first_instance: u32,
 }
 
+/// Groups of the passes over pictures. 16 bytes.
+struct SheetTargets {
+    /// Columns and rows over the picture.
+    picture: vec2<u32>,
+    /// Columns and rows over the shadow buffer.
+    shadow: vec2<u32>,
+}
+
 @group(#{GROUP}) @binding(0) var<uniform> volume: SplatVolume;
 @group(#{GROUP}) @binding(1) var<uniform> sheets: Sheets;
 @group(#{GROUP}) @binding(2) var<uniform> kernel: Kernel;
@@ -37,7 +47,8 @@ struct Draw {
 @group(#{GROUP}) @binding(5) var<storage, read_write> order: array<u32>;
 @group(#{GROUP}) @binding(6) var<storage, read_write> ranges: array<vec2<u32>>;
 @group(#{GROUP}) @binding(7) var<storage, read_write> draws: array<Draw>;
-@group(#{GROUP}) @binding(8) var<storage, read_write> pictures: array<Draw>;
+@group(#{GROUP}) @binding(8) var<storage, read_write> dispatches: array<array<vec4<u32>, 2>>;
+@group(#{GROUP}) @binding(10) var<uniform> targets: SheetTargets;
 
 @compute @workgroup_size(256)
 fn first_sheets(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -67,7 +78,7 @@ fn keys_below(key: u32) -> u32 {
 @compute @workgroup_size(64)
 fn sheet_ranges(@builtin(global_invocation_id) id: vec3<u32>) {
     let sheet = id.x;
-    if sheet >= min(sheets.count, min(arrayLength(&ranges), min(arrayLength(&draws), arrayLength(&pictures)))) {
+    if sheet >= min(sheets.count, min(arrayLength(&ranges), min(arrayLength(&draws), arrayLength(&dispatches)))) {
         return;
     }
     let first = keys_below(max(sheet + 1u, sheets.span) - sheets.span);
@@ -76,6 +87,7 @@ fn sheet_ranges(@builtin(global_invocation_id) id: vec3<u32>) {
     draws[sheet] = Draw(6u, count, 0u, 0u);
     // Batches of splats come one after the other.
     if count > 0u {
-        pictures[sheet] = Draw(3u, 1u, 0u, 0u);
+        dispatches[sheet][0] = vec4<u32>(targets.picture, 1u, 0u);
+        dispatches[sheet][1] = vec4<u32>(targets.shadow, 1u, 0u);
     }
 }
