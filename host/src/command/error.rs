@@ -2,6 +2,8 @@
 //! One sentence to the person at the keyboard, and the exit code that goes with it.
 
 use crate::core::{CameraError, LightError, VolumeTextureError};
+use crate::data::MediumFileError;
+use crate::painterly::{PainterlyError, PaintingError, StrokeError};
 use crate::scattering::ScatteringError;
 use crate::scenes::SceneError;
 use crate::stylize::StylizeError;
@@ -64,6 +66,16 @@ pub(super) fn shader_error(error: airlight_validate::Error) -> CommandError {
         | Error::UnknownPermutation { .. }
         | Error::Definition { .. } => CommandError::Misuse(one_line(error)),
         other => CommandError::failure(one_line(other)),
+    }
+}
+
+/// Misuse where the name of a file of a medium is unknown, a failure where the file is broken. `known`: what may be given.
+pub(super) fn medium_error(flag: &str, error: MediumFileError, known: &str) -> CommandError {
+    match error {
+        MediumFileError::UnknownExtension { path, .. } => {
+            CommandError::misuse(flag, format!("`{}` is unknown: give {known}", path.display()))
+        }
+        error => CommandError::Failure(format!("{flag}: {error}")),
     }
 }
 
@@ -158,6 +170,59 @@ impl From<TransmittanceError> for CommandError {
             | E::Pass(_) => {
                 return Self::failure(error);
             }
+        };
+        Self::misuse(flag, error)
+    }
+}
+
+impl From<PaintingError> for CommandError {
+    fn from(error: PaintingError) -> Self {
+        match error {
+            PaintingError::Rays(error) => error.into(),
+            PaintingError::Strokes(error) => error.into(),
+        }
+    }
+}
+
+impl From<PainterlyError> for CommandError {
+    fn from(error: PainterlyError) -> Self {
+        use PainterlyError as E;
+        let flag = match &error {
+            E::Setting { name: "iso-value", .. } => "--iso",
+            E::Setting { name: "steps per voxel", .. } => "--steps",
+            E::Setting { name: "radiance of the light" | "ambient radiance", .. } => "--exposure",
+            E::Setting { name: "underpainting", .. } => "--underpainting",
+            E::ClipPlanes(_)
+            | E::Setting { name: "length of a clip plane's normal" | "offset of a clip plane", .. } => {
+                "--clip"
+            }
+            E::Size { .. } => "--size",
+            E::Volume(_) | E::Space => return Self::failure(format!("--volume: {error}")),
+            E::File(_)
+            | E::Transfer { .. }
+            | E::Points
+            | E::Entries { .. }
+            | E::Entry { .. }
+            | E::Range(..) => {
+                return Self::failure(format!("--transfer: {error}"));
+            }
+            E::Setting { .. } | E::Table { .. } | E::NoCurvature | E::Pass(_) => return Self::failure(error),
+        };
+        Self::misuse(flag, error)
+    }
+}
+
+impl From<StrokeError> for CommandError {
+    fn from(error: StrokeError) -> Self {
+        use StrokeError as E;
+        let flag = match &error {
+            E::Capacity { .. } => "--capacity",
+            E::Size { .. } => "--size",
+            E::Style { .. } | E::File(_) | E::MissingBrush { .. } => {
+                return Self::failure(format!("--style: {error}"));
+            }
+            E::Brush { .. } | E::NoBrush => return Self::failure(format!("--brush: {error}")),
+            E::OtherSize { .. } | E::Curvature | E::Transform | E::Pass(_) => return Self::failure(error),
         };
         Self::misuse(flag, error)
     }

@@ -3,13 +3,18 @@
 
 mod bench;
 mod error;
+mod fit;
 mod gallery;
 mod info;
 mod list;
+mod painterly;
 mod parse;
 mod progress;
 mod run;
+mod scans;
 mod scattering;
+mod sequence;
+mod staging;
 mod stylize;
 mod text;
 mod transmittance;
@@ -44,6 +49,8 @@ enum Command {
     Stylize(Box<stylize::Options>),
     /// A volume or particles of yours, lit through a transmittance map.
     Transmittance(Box<transmittance::Options>),
+    /// A volume of yours as a painting, frame by frame.
+    Painterly(Box<painterly::Options>),
     /// Any compute or full-screen pass on arrays of yours, by binding name.
     Run(run::Options),
     /// Ratios against baselines, interleaved, with the error of both sides.
@@ -63,6 +70,7 @@ pub fn main() -> ExitCode {
         Command::Scattering(options) => scattering::run(&options, quiet),
         Command::Stylize(options) => stylize::run(&options, quiet),
         Command::Transmittance(options) => transmittance::run(&options, quiet),
+        Command::Painterly(options) => painterly::run(&options, quiet),
         Command::Run(options) => run::run(&options),
         Command::Bench(options) => bench::run(&options, quiet),
         Command::List(options) => list::list(&options),

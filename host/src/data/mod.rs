@@ -34,6 +34,8 @@ pub use particles::{Particle, Particles, burst};
 pub use random::Random;
 pub use shapes::{cuboid, plane, sphere, torus};
 #[cfg(feature = "command")]
+#[cfg(feature = "command")]
+pub(crate) use srgb::srgb_from_linear;
 pub(crate) use srgb::{linear_from_hexadecimal, linear_from_srgb};
 pub use terrain::{TerrainParameters, terrain, terrain_height};
 pub use tree::{TreeParameters, tree};

@@ -6,6 +6,12 @@ pub(crate) fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
+/// Of a linear value, likewise.
+#[cfg(feature = "command")]
+pub(crate) fn srgb_from_linear(value: f32) -> f32 {
+    if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// Linear RGB of `#rrggbb`, sRGB.
 pub(crate) fn linear_from_hexadecimal(text: &str) -> Option<[f32; 3]> {
     let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;

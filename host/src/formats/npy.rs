@@ -46,7 +46,9 @@ pub enum ArrayError {
         found: String,
     },
     /// Fewer bytes than the shape asks for.
-    #[error("{path}: the array is cut off: its shape {shape:?} needs {needed} bytes but only {found} follow")]
+    #[error(
+        "{path}: the array is cut off: its shape {shape:?} needs {needed} bytes but only {found} follow; save it again with numpy.save"
+    )]
     Truncated {
         /// The file.
         path: PathBuf,

@@ -51,4 +51,4 @@ pub use toml_file::TomlFileError;
 pub use transfer::{Transfer, TransferPoint};
 #[cfg(feature = "command")]
 pub use transfer_file::{TRANSFERS, TransferFunction, parse_transfer, read_transfer};
-pub use volume::IsoVolume;
+pub use volume::{IsoVolume, value_range};

@@ -68,7 +68,8 @@ impl Transfer {
     }
 }
 
-fn entry(points: &[TransferPoint], value: f32) -> [f32; 4] {
+/// Linear RGB and opacity of a value 0..1. `points`: at least one.
+pub(super) fn entry(points: &[TransferPoint], value: f32) -> [f32; 4] {
     let next = points.partition_point(|point| point.value <= value);
     let (from, to) = (points[next.max(1) - 1], points[next.min(points.len() - 1)]);
     let span = to.value - from.value;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Transfer functions of volumes as TOML files.
 
+use super::transfer::entry;
 use super::{PainterlyError, Transfer, TransferPoint, toml_file};
 use crate::data::linear_from_hexadecimal;
 use crate::gpu::Gpu;
@@ -31,6 +32,18 @@ impl TransferFunction {
     /// As [`Transfer::of_points`].
     pub fn upload(&self, gpu: &Gpu) -> Result<Transfer, PainterlyError> {
         Transfer::of_points(gpu, &self.points, ENTRIES)
+    }
+
+    /// Opacity of a value 0..1 of the range; 0 without points.
+    pub fn opacity(&self, value: f32) -> f32 {
+        if self.points.is_empty() { 0.0 } else { entry(&self.points, value)[3] }
+    }
+
+    /// The greatest opacity of the values from `low` to `high`, 0..1 of the range.
+    pub fn greatest_opacity(&self, low: f32, high: f32) -> f32 {
+        let between = self.points.iter().filter(|point| (low..=high).contains(&point.value));
+        let ends = self.opacity(low).max(self.opacity(high));
+        between.map(|point| point.opacity).fold(ends, f32::max)
     }
 }
 
@@ -125,6 +138,20 @@ mod tests {
         let function = parse_transfer("f.toml", text).unwrap();
         let expected = TransferPoint { value: 0.25, color: Vec3::new(1.0, 2.0, 0.5), opacity: 0.25 };
         assert_eq!(function, TransferFunction { range: Some([100.0, 300.0]), points: vec![expected] });
+    }
+
+    #[test]
+    fn opacities_are_those_of_the_points_and_between() {
+        let point = |value, opacity| TransferPoint { value, color: Vec3::ONE, opacity };
+        let points = vec![point(0.25, 0.0), point(0.5, 1.0), point(0.75, 0.5)];
+        let function = TransferFunction { range: None, points };
+        assert_eq!([0.0, 0.375, 0.5, 0.625, 1.0].map(|v| function.opacity(v)), [0.0, 0.5, 1.0, 0.75, 0.5]);
+        for (low, high, greatest) in [(0.0, 1.0, 1.0), (0.0, 0.375, 0.5), (0.625, 1.0, 0.75), (0.0, 0.1, 0.0)]
+        {
+            assert_eq!(function.greatest_opacity(low, high), greatest, "{low} to {high}");
+        }
+        let none = TransferFunction { range: None, points: Vec::new() };
+        assert_eq!((none.opacity(0.5), none.greatest_opacity(0.0, 1.0)), (0.0, 0.0));
     }
 
     #[test]

@@ -35,7 +35,7 @@ impl IsoVolume {
         if volume.size.iter().any(|side| *side == 0 || *side > limit) {
             return Err(VolumeTextureError::Size { size: volume.size, limit }.into());
         }
-        let [low, high] = range.unwrap_or_else(|| own_range(&volume.values)).map(f64::from);
+        let [low, high] = range.unwrap_or_else(|| value_range(&volume.values)).map(f64::from);
         if !(low.is_finite() && high.is_finite() && high > low) {
             return Err(PainterlyError::Range(low as f32, high as f32));
         }
@@ -65,8 +65,9 @@ impl IsoVolume {
     }
 }
 
-/// Least and greatest finite number; a range of one above where all are alike.
-fn own_range(values: &[f32]) -> [f32; 2] {
+/// The range of values of a volume for which none is given: its least and greatest finite number; where all are alike, one that
+/// begins there.
+pub fn value_range(values: &[f32]) -> [f32; 2] {
     let finite = values.iter().copied().filter(|value| value.is_finite());
     let (low, high) = finite
         .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));

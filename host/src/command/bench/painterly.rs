@@ -2,9 +2,9 @@
 //! The named figures of the system `painterly`: ray casting of iso-surfaces.
 
 use super::{Quality, Row, Work, figure, interleaved, ratio, time};
-use crate::command::{CommandError, progress};
+use crate::command::{CommandError, progress, scans};
 use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
-use crate::data::{Volume, marschner_lobb, volume_from_bytes};
+use crate::data::{Volume, marschner_lobb};
 use crate::painterly::{
     BrickRanges, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, SolidBricks,
     SurfaceLighting, Transfer,
@@ -170,18 +170,12 @@ fn rising(from: usize, to: usize) -> Vec<[f32; 4]> {
     (0..65).map(|i| [0.9, 0.8, 0.7, opacity(i)]).collect()
 }
 
-fn asset(name: &str, bytes: &[u8]) -> Result<Volume, CommandError> {
-    volume_from_bytes(name, bytes).map_err(CommandError::failure)
-}
-
 fn head(gpu: &Gpu, shaders: &Shaders) -> Result<Scene, CommandError> {
-    let volume = asset("head_mri.nii.gz", include_bytes!("../../../assets/head_mri.nii.gz"))?;
-    Scene::new(gpu, shaders, volume, rising(8, 24), Vec3::new(0.45, 0.2, 0.85))
+    Scene::new(gpu, shaders, scans::head()?, rising(8, 24), Vec3::new(0.45, 0.2, 0.85))
 }
 
 fn stent(gpu: &Gpu, shaders: &Shaders) -> Result<Scene, CommandError> {
-    let volume = asset("stent_ct.nii.gz", include_bytes!("../../../assets/stent_ct.nii.gz"))?;
-    Scene::new(gpu, shaders, volume, rising(12, 20), Vec3::new(0.5, 0.4, 0.7))
+    Scene::new(gpu, shaders, scans::stent()?, rising(12, 20), Vec3::new(0.5, 0.4, 0.7))
 }
 
 /// The test signal from near, so that it fills most of the picture; opacity is the value.

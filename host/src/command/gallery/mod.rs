@@ -6,6 +6,7 @@ mod epipole;
 mod lights;
 mod methods;
 mod page;
+mod painterly;
 mod plate;
 mod plates;
 mod studio;
@@ -48,6 +49,8 @@ enum Subject {
     Stylize(&'static str),
     /// Media that shadow themselves.
     Transmittance(&'static str),
+    /// Scans in brush strokes.
+    Painterly(&'static str),
 }
 
 /// What is shown of light shafts where nothing is chosen.
@@ -67,8 +70,9 @@ const SCATTERING: [Subject; 10] = [
 /// What is shown where nothing is chosen.
 fn all() -> Vec<Subject> {
     let scattering = SCATTERING.into_iter();
-    let others = stylize::NAMES.map(Subject::Stylize).into_iter();
-    scattering.chain(others).chain(transmittance::NAMES.map(Subject::Transmittance)).collect()
+    let stylize = stylize::NAMES.map(Subject::Stylize);
+    let transmittance = transmittance::NAMES.map(Subject::Transmittance);
+    scattering.chain(stylize).chain(transmittance).chain(painterly::NAMES.map(Subject::Painterly)).collect()
 }
 
 /// Runs the command.
@@ -88,6 +92,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
             Subject::Lights => lights::section(&studio, &subject.folder()),
             Subject::Stylize(name) => stylize::section(&studio, &subject.folder(), name),
             Subject::Transmittance(name) => transmittance::section(&studio, &subject.folder(), name),
+            Subject::Painterly(name) => painterly::section(&studio, &subject.folder(), name),
         };
         sections.push(section?);
         bar.inc(1);
@@ -107,6 +112,7 @@ impl Subject {
         match self {
             Self::Stylize(_) => "stylize",
             Self::Transmittance(_) => "transmittance",
+            Self::Painterly(_) => "painterly",
             _ => "scattering",
         }
     }
@@ -114,7 +120,9 @@ impl Subject {
     /// Its name, as in `--only scattering/NAME`; sheets of several scenes share one.
     fn name(self) -> &'static str {
         match self {
-            Self::Scene(name) | Self::Stylize(name) | Self::Transmittance(name) => name,
+            Self::Scene(name) | Self::Stylize(name) | Self::Transmittance(name) | Self::Painterly(name) => {
+                name
+            }
             Self::Methods(_) => "methods",
             Self::Epipole => "epipole",
             Self::Lights => "lights",
@@ -153,7 +161,8 @@ fn choose(only: Option<&str>) -> Result<Vec<Subject>, CommandError> {
     let mut known: Vec<String> = subjects.into_iter().map(Subject::path).collect();
     known.dedup();
     let known = known.join(", ");
-    let reason = format!("there is no `{only}`; there is scattering, stylize, transmittance, {known}");
+    let reason =
+        format!("there is no `{only}`; there is scattering, stylize, transmittance, painterly, {known}");
     Err(CommandError::misuse("--only", reason))
 }
 
@@ -170,7 +179,9 @@ mod tests {
         assert_eq!(stylize.len(), stylize::NAMES.len());
         let transmittance = choose(Some("transmittance")).unwrap();
         assert_eq!(transmittance.len(), transmittance::NAMES.len());
-        assert_eq!([&SCATTERING[..], &stylize, &transmittance].concat(), all());
+        let painterly = choose(Some("painterly")).unwrap();
+        assert_eq!(painterly.len(), painterly::NAMES.len());
+        assert_eq!([&SCATTERING[..], &stylize, &transmittance, &painterly].concat(), all());
         for subject in all() {
             assert!(choose(Some(&subject.path())).unwrap().contains(&subject));
             assert_eq!(choose(Some(&subject.folder())).unwrap(), [subject]);
@@ -179,13 +190,20 @@ mod tests {
         assert_eq!(choose(Some("scattering/spot")).unwrap(), [Subject::Scene("spot")]);
         assert_eq!(choose(Some("stylize/halo")).unwrap(), [Subject::Stylize("halo")]);
         assert_eq!(choose(Some("transmittance/plume")).unwrap(), [Subject::Transmittance("plume")]);
+        assert_eq!(choose(Some("painterly/stent")).unwrap(), [Subject::Painterly("stent")]);
         assert_eq!(choose(Some("scattering/halo")).unwrap(), [Subject::Scene("halo")]);
     }
 
     #[test]
     fn what_is_not_there_is_refused_with_what_is() {
-        for wrong in ["ambient", "scattering/nothing", "stylize/lights", "transmittance/halo", "foliage", ""]
-        {
+        for wrong in [
+            "ambient",
+            "scattering/nothing",
+            "stylize/lights",
+            "transmittance/halo",
+            "painterly/a",
+            "foliage",
+        ] {
             let error = choose(Some(wrong)).unwrap_err().to_string();
             assert!(error.contains("scattering/lights") && error.contains("stylize/halo"), "{error}");
             assert_eq!(error.matches("scattering/methods").count(), 1, "{error}");

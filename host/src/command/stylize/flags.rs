@@ -2,9 +2,9 @@
 //! The flags of `airlight stylize`, and which of them cannot be meant together.
 
 use super::holes::KeyedHoles;
-use super::sequence::{FrameRange, frames, rate};
 use crate::command::CommandError;
 use crate::command::scattering::{self, JitterSpelling};
+use crate::command::sequence::{FrameRange, frames, rate};
 use crate::stylize::{Element, Form, Keyed, Operator, ShadowOperator, Width};
 use clap::ValueEnum;
 use std::path::PathBuf;

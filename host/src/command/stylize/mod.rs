@@ -4,12 +4,12 @@
 mod flags;
 mod holes;
 mod recolour;
-mod sequence;
 mod shadows;
 
 pub use flags::Options;
 
 use super::scattering::{Buffers, Scene, Shafts, read_meshes, tone_mapped, whole, write_pictures};
+use super::sequence::{self, FrameRange, delay, numbered};
 use super::{CommandError, progress};
 use crate::Texture;
 use crate::core::Tonemap;
@@ -19,7 +19,6 @@ use crate::stylize::{TransferSettings, read_transfer};
 use glam::Vec3;
 use indicatif::ProgressBar;
 use recolour::{Recolour, Scattered, movements, positions};
-use sequence::{FrameRange, delay, numbered};
 use shadows::Shadows;
 use std::collections::BTreeMap;
 use std::io;

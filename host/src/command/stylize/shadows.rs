@@ -2,9 +2,9 @@
 //! The shadow maps of every eye through holes and operators, and scattering bound to them.
 
 use super::Options;
-use super::sequence::{FrameRange, RATE};
 use crate::command::CommandError;
 use crate::command::scattering::{Buffers, Shafts, whole};
+use crate::command::sequence::{FrameRange, RATE};
 use crate::data::Mesh;
 use crate::scattering::{Inputs, ViewsBound};
 use crate::stage::PartShadows;

@@ -4,10 +4,9 @@
 use super::flags::{Options, Source};
 use crate::Lighting;
 use crate::command::CommandError;
+use crate::command::error::medium_error;
 use crate::core::{Light, LightError};
-use crate::data::{
-    Bounds, MediumFileError, Particles, Volume, burst, cloud, load_particles, load_volume, plume,
-};
+use crate::data::{Bounds, Particles, Volume, burst, cloud, load_particles, load_volume, plume};
 use crate::transmittance::ParticleCounts;
 use glam::Vec3;
 
@@ -56,7 +55,7 @@ impl Medium {
             Source::VolumeFile(path) => {
                 let known = "cloud, plume, or a file that ends in .nii, .nii.gz or .npy";
                 let volume = load_volume(path, flags.voxel.unwrap_or(1.0));
-                let mut volume = volume.map_err(|error| refused("--volume", error, known))?;
+                let mut volume = volume.map_err(|error| medium_error("--volume", error, known))?;
                 let array = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy"));
                 if array && flags.voxel.is_none() {
                     let longest = volume.bounds().size().max_element();
@@ -72,8 +71,9 @@ impl Medium {
                 .map_err(CommandError::Failure),
             Source::ParticleFile(path) => {
                 let read = load_particles(path);
-                let read = read
-                    .map_err(|error| refused("--particles", error, "burst, or a file that ends in .npy"))?;
+                let read = read.map_err(|error| {
+                    medium_error("--particles", error, "burst, or a file that ends in .npy")
+                })?;
                 Self::of_particles(read, flags).map_err(|problem| {
                     CommandError::failure(format!("--particles: {}: {problem}", path.display()))
                 })
@@ -151,15 +151,6 @@ fn voxels(flags: &Options, sides: [f32; 3]) -> [u32; 3] {
     let longest = sides.into_iter().fold(0.0, f32::max);
     let count = flags.voxels.unwrap_or(160) as f32;
     sides.map(|side| (count * side / longest).round() as u32)
-}
-
-fn refused(flag: &str, error: MediumFileError, known: &str) -> CommandError {
-    match error {
-        MediumFileError::UnknownExtension { path, .. } => {
-            CommandError::misuse(flag, format!("`{}` is unknown: give {known}", path.display()))
-        }
-        error => CommandError::Failure(format!("{flag}: {error}")),
-    }
 }
 
 /// The box around all voxels of more than `share`.

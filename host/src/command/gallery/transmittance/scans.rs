@@ -6,13 +6,11 @@ use super::super::studio::Studio;
 use super::setting::Arrangement;
 use super::sky::Sky;
 use super::volumes;
-use crate::command::CommandError;
+use crate::command::{CommandError, scans};
 use crate::core::{DepthRange, PerspectiveView};
-use crate::data::{Bounds, Volume, volume_from_bytes};
+use crate::data::{Bounds, Volume};
 use glam::{Mat4, Vec3};
 
-/// The scan, from `host/assets`.
-const HEAD: (&str, &[u8]) = ("head_mri.nii.gz", include_bytes!("../../../../assets/head_mri.nii.gz"));
 /// Values from which on there is tissue, and from which on it is as dense as can be.
 const WINDOW: (f32, f32) = (85.0, 190.0);
 /// 1/m where it is as dense as can be.
@@ -20,7 +18,7 @@ const EXTINCTION: f32 = 70.0;
 
 /// The brain of the scan, in the light of a lamp.
 pub fn brain(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
-    let volume = windowed(volume_from_bytes(HEAD.0, HEAD.1).map_err(CommandError::failure)?);
+    let volume = windowed(scans::head()?);
     let arrangement = Arrangement {
         view: PerspectiveView {
             eye: Vec3::new(-0.20, 0.075, 0.36),
