@@ -36,8 +36,8 @@ fn classified(transfer: texture_2d<f32>, linear_sampler: sampler, value: f32) ->
 fn mean_transmittance(optical_depth: f32) -> f32 {
     let x = max(optical_depth, 0.0);
     // The series where the quotient would lose its digits.
-    let near = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0));
-    return select((1.0 - exp(-x)) / max(x, 1e-3), near, x < 0.05);
+    let near = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x / 720.0))));
+    return select((1.0 - exp(-x)) / max(x, 0.1), near, x < 0.2);
 }
 
 /// Gradient of a field, in 1/m of what it is made of, from its changes along three vectors, metres; 0 where these lie in a plane.
