@@ -227,7 +227,8 @@ fn a_ball_lit_by_phong_has_the_normals_of_a_ball() {
             let Some(normal) = normal_of_ball(offset, view, radius) else { continue };
             let [to_eye, to_light] = [view, way].map(|way| -normal.dot(way));
             // Where either grazes the ball, the layer is no plane.
-            if to_eye < 0.5 || to_light < 0.5 {
+            // Where it faces the light, one percent of brightness is seven degrees.
+            if to_eye < 0.5 || !(0.5..0.95).contains(&to_light) {
                 continue;
             }
             // A layer that rises from nothing to opaque, however it does: light and sight are taken by it in proportion to the
@@ -246,6 +247,6 @@ fn a_ball_lit_by_phong_has_the_normals_of_a_ball() {
         println!(
             "light at {degrees} degrees from the view, {pixels} pixels: {mean:.2} degrees off, {worst:.2} at most"
         );
-        assert!(pixels > 300 && mean < 2.5 && worst < 8.0, "{degrees}: {mean} {worst}");
+        assert!(pixels > 250 && mean < 2.5 && worst < 8.0, "{degrees}: {mean} {worst}");
     }
 }
