@@ -26,7 +26,9 @@ struct Draw {
     vertices: u32,
     /// Instances.
     instances: u32,
+    /// Number of the first vertex, 0.
     first_vertex: u32,
+    /// Number of the first instance, 0: others need a feature.
     first_instance: u32,
 }
 
