@@ -4,7 +4,8 @@
 //!
 //! Each is a pass that builds a texture from the rectified map and one that evaluates a picture,
 //! average visibility over the nearest row. Their sources import Airlight's modules. One more copies
-//! a shadow map, texel by texel: the floor under all that morphology does.
+//! a shadow map, texel by texel: the floor under all that morphology does. And one draws quads whose
+//! corners are known: the floor under all that drawing strokes does.
 
 pub mod minmax;
 pub mod variance;
@@ -29,7 +30,7 @@ macro_rules! picture {
 }
 
 /// Every pass.
-pub const PASSES: [Source; 7] = [
+pub const PASSES: [Source; 8] = [
     Source { name: "minmax_build", text: include_str!("baselines/minmax_build.wgsl") },
     Source { name: "minmax", text: picture!("baselines/minmax.wgsl") },
     Source { name: "minmax_binary_build", text: include_str!("baselines/minmax_binary_build.wgsl") },
@@ -37,4 +38,5 @@ pub const PASSES: [Source; 7] = [
     Source { name: "variance_filter", text: include_str!("baselines/variance_filter.wgsl") },
     Source { name: "variance", text: picture!("baselines/variance.wgsl") },
     Source { name: "copy", text: include_str!("baselines/copy.wgsl") },
+    Source { name: "plain_quads", text: include_str!("baselines/plain_quads.wgsl") },
 ];

@@ -22,7 +22,7 @@ use airlight::stylize::{
 use airlight::transmittance::{MediumLighting, SplatTarget};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
-use glam::{Mat4, UVec2, UVec3, Vec2, Vec3, Vec4};
+use glam::{Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
@@ -109,10 +109,10 @@ impl Sentinel for UVec2 {
         Self::ZERO
     }
     fn sentinel() -> Self {
-        Self::new(0x0102_0304, 0x0506_0708)
+        Self::new(1, 2)
     }
     fn words() -> Vec<(u32, u32)> {
-        vec![(0, 0x0102_0304), (4, 0x0506_0708)]
+        vec![(0, 1), (4, 2)]
     }
 }
 
@@ -122,10 +122,23 @@ impl Sentinel for UVec3 {
         Self::ZERO
     }
     fn sentinel() -> Self {
-        Self::new(0x0102_0304, 0x0506_0708, 0x090a_0b0c)
+        Self::new(1, 2, 3)
     }
     fn words() -> Vec<(u32, u32)> {
-        vec![(0, 0x0102_0304), (4, 0x0506_0708), (8, 0x090a_0b0c)]
+        vec![(0, 1), (4, 2), (8, 3)]
+    }
+}
+
+impl Sentinel for UVec4 {
+    const TYPE: &'static str = "vec4<u32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1, 2, 3, 4)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1), (4, 2), (8, 3), (12, 4)]
     }
 }
 
@@ -300,8 +313,9 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         orientation_rate: f32, size_rate: f32, opacity_rate: f32, fade_out_rate: f32, hidden_rate: f32, reserved: f32,
     });
     twin!(twins: StrokeCounts {
-        vertices: u32, instances: u32, first_vertex: u32, first_instance: u32, born: u32, dropped: u32,
-        dropped_in_all: u32, reserved: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
+        vertices: u32, draws: u32, first_vertex: u32, first_instance: u32, born: u32, dropped: u32,
+        dropped_in_all: u32, instances: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
+        density_draw: UVec4,
     });
     twin!(twins: Sheets {
         normal: Vec3, first: f32, thickness: f32, count: u32, span: u32, front_to_back: u32,

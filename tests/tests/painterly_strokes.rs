@@ -172,8 +172,8 @@ fn coarse_strokes_come_first_and_old_ones_before_new_ones() {
     assert!(keys.is_sorted_by(|a, b| a < b));
     let layers = [0, 1, 2].map(|layer| strokes.iter().filter(|s| s.layer == layer).count() as u32);
     assert_eq!(counts.layers(), layers);
-    assert_eq!((counts.vertices, counts.first_vertex, counts.first_instance), (6, 0, 0));
-    assert_eq!(counts.instances as usize, strokes.len());
+    assert_eq!((counts.draws, counts.first_vertex, counts.first_instance), (1, 0, 0));
+    assert_eq!((counts.instances as usize, counts.vertices), (strokes.len(), 6 * counts.instances));
     // Survivors in their order, then those that were born.
     let survivors = strokes.len() - counts.born as usize;
     assert!(counts.born > 10 && survivors > 1000);

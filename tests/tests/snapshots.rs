@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Every intermediate buffer of scattering and of stylization, and transmittance maps, against their snapshots, on small scenes of
+//! Every intermediate buffer of scattering, of stylization and of paintings, and transmittance maps, against their snapshots, on small scenes of
 //! the tests' own. `make bless` replaces what has changed; look at the pictures at full size first.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/painted.rs"]
+mod painted;
 #[path = "support/snapshot.rs"]
 mod snapshot;
 
 use airlight::core::{DepthRange, Light, Reading, Tonemap, VolumeTexture};
-use airlight::data::{burst, cloud};
+use airlight::data::{burst, cloud, torus_field};
+use airlight::painterly::{Orientation, PainterlyStyle};
 use airlight::scattering::{
     Along, BasisFormat, Composite, Inputs, March, Prefiltered, Settings, Visibility, Weighting,
 };
@@ -254,6 +257,54 @@ fn maps_of_particles() {
         let rounding = if fixed { tolerance(1e-4, 1e-4, 0.01) } else { tolerance(1e-3, 5e-3, 0.01) };
         assert_map(&format!("burst_map_{name}"), &map, rounding);
     }
+}
+
+#[test]
+fn painterly_torus() {
+    let _turn = gpu::turn();
+    let table = [[0.2, 0.3, 0.8, 0.0], [0.9, 0.5, 0.2, 1.0]];
+    let exhibit = painted::Exhibit::new(torus_field([32, 28, 24], 0.55, 0.25), Some([0.0, 1.0]), &table);
+    let source = [40, 30];
+    let style = painted::style([0.06, 0.09, 1.0]);
+    let style = PainterlyStyle { orientation: Orientation::Curvature, ..style };
+    let mut painting = exhibit.painting(painted::settings(style, source));
+    for number in 0..4 {
+        let mut frame = exhibit.frame(source, number);
+        // The first strokes are there at once.
+        frame.seconds = if number == 1 { 1.0 } else { frame.seconds };
+        painted::paint(&mut painting, &frame);
+    }
+    let targets = painting.targets();
+    let strokes = painting.strokes();
+    let name = |what: &str| format!("painterly_torus_{what}");
+    // A ray that grazes may hit something else on another adapter, and chance puts another stroke on it.
+    let sharp = tolerance(2e-3, 2e-3, 0.03);
+    assert_buffer(&name("color"), &buffer(&targets.color, 0, 4, sharp));
+    assert_buffer(&name("surface"), &buffer(&targets.surface, 0, 4, sharp));
+    assert_buffer(&name("flow"), &buffer(&targets.flow, 0, 2, tolerance(2e-3, 5e-3, 0.03)));
+    assert_buffer(&name("distance"), &buffer(&targets.distance, 0, 1, tolerance(1e-4, 1e-4, 0.03)));
+    let curvature = targets.curvature.as_ref().unwrap();
+    assert_buffer(&name("curvature"), &buffer(curvature, 0, 4, tolerance(5e-3, 0.01, 0.05)));
+    assert_buffer(&name("density"), &buffer(&strokes.density, 0, 3, tolerance(1e-3, 5e-3, 0.1)));
+
+    let adapter = gpu().description();
+    let list = strokes.read(gpu()).unwrap();
+    let rows = list.iter().step_by(8).flat_map(|stroke| {
+        let place = [stroke.position.x, stroke.position.y, stroke.orientation, stroke.opacity];
+        place.into_iter().chain([stroke.size, stroke.layer as f32, stroke.state as u32 as f32])
+    });
+    let values: Vec<f32> = rows.collect();
+    let shape = [1, values.len() / 7, 7];
+    let tolerance = tolerance(1e-3, 1e-3, 0.2);
+    assert_buffer(&name("strokes"), &Buffer { adapter: adapter.clone(), shape, tolerance, values });
+    let order = strokes.read_order(gpu()).unwrap();
+    let values: Vec<f32> = order.iter().step_by(4).map(|number| *number as f32).collect();
+    let (shape, tolerance) =
+        ([values.len(), 1, 1], Tolerance { absolute: 0.5, relative: 0.0, outliers: 1.0 });
+    assert_buffer(&name("order"), &Buffer { adapter: adapter.clone(), shape, tolerance, values });
+
+    let pixels = Tonemap::new(gpu(), shaders()).unwrap().run(gpu(), &painting.picture, 1.0).unwrap();
+    assert_picture(&name("picture"), &adapter, &Picture { size: painted::SIZE, pixels }, 0.95);
 }
 
 // The machinery itself.

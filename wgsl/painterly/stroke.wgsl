@@ -7,6 +7,10 @@
 
 /// Layers of strokes: coarse 0, medium 1, fine 2.
 const LAYERS: u32 = 3u;
+/// Strokes that one thread counts and lists.
+const CHUNK: u32 = 32u;
+/// Columns and rows of pixels that one thread looks at for births: as many as a word has bits.
+const BLOCK: vec2<u32> = vec2<u32>(8u, 4u);
 /// Where there is no surface, or its gradient is beyond the last threshold.
 const NO_LAYER: u32 = 3u;
 
@@ -129,10 +133,10 @@ struct StrokeStyle {
 
 /// Counts that stay on the GPU. The first four are the arguments of an indirect draw. 48 bytes.
 struct StrokeCounts {
-    /// Vertices of a stroke, 6.
+    /// Vertices of all strokes, 6 each.
     vertices: u32,
-    /// Strokes in the buffer.
-    instances: u32,
+    /// 1: all strokes are one instance, for small instances leave threads idle.
+    draws: u32,
     /// 0.
     first_vertex: u32,
     /// 0.
@@ -143,7 +147,8 @@ struct StrokeCounts {
     dropped: u32,
     /// Dropped in all frames.
     dropped_in_all: u32,
-    reserved: u32,
+    /// Strokes in the buffer.
+    instances: u32,
     /// Strokes of the coarse layer.
     coarse: u32,
     /// Strokes of the medium layer.
@@ -152,11 +157,23 @@ struct StrokeCounts {
     fine: u32,
     /// Frames that were counted.
     frames: u32,
+    /// Arguments of the indirect draw of densities: vertices of all strokes, 3 each; 1; 0; 0.
+    density_draw: vec4<u32>,
 }
 
 /// The number of a layer, 0..2, out of three.
 fn of_layer(three: vec3<f32>, layer: u32) -> f32 {
     return select(select(three.z, three.y, layer == 1u), three.x, layer == 0u);
+}
+
+/// Chunks of so many strokes.
+fn chunks_of(strokes: u32) -> u32 {
+    return (strokes + CHUNK - 1u) / CHUNK;
+}
+
+/// Columns and rows of blocks of so many pixels.
+fn blocks_of(size: vec2<u32>) -> vec2<u32> {
+    return (size + BLOCK - 1u) / BLOCK;
 }
 
 /// Opacity that a stroke fades to, 0..1.

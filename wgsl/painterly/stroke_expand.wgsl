@@ -2,7 +2,7 @@
 #define_import_path airlight::painterly::stroke_expand
 // summary: A stroke as a quad of the picture: corners, texture coordinates, brush and tint.
 // source: Ramalhao (2010), 4.2.6.
-// note: There are no geometry shaders here: six vertices an instance, an instance a stroke, drawn indirectly.
+// note: There are no geometry shaders here: six vertices a stroke, or a triangle around it, drawn indirectly.
 
 #import airlight::painterly::stroke::Stroke
 #import airlight::painterly::stroke_placement::own_variation

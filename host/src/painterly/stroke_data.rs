@@ -2,7 +2,7 @@
 //! What host and shaders share of strokes: the structs of `painterly/stroke`.
 
 use encase::ShaderType;
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, UVec4, Vec2, Vec3};
 
 /// Words of a stroke in its buffer.
 pub(super) const STROKE_WORDS: usize = 16;
@@ -90,10 +90,10 @@ pub struct StrokeStyle {
 /// The counts that stay on the GPU; the first four are the arguments of an indirect draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ShaderType)]
 pub struct StrokeCounts {
-    /// Vertices of a stroke.
+    /// Vertices of all strokes, 6 each.
     pub vertices: u32,
-    /// Strokes in the buffer.
-    pub instances: u32,
+    /// 1.
+    pub draws: u32,
     /// 0.
     pub first_vertex: u32,
     /// 0.
@@ -104,8 +104,8 @@ pub struct StrokeCounts {
     pub dropped: u32,
     /// Dropped in all frames.
     pub dropped_in_all: u32,
-    /// Padding.
-    pub reserved: u32,
+    /// Strokes in the buffer.
+    pub instances: u32,
     /// Strokes of the coarse layer.
     pub coarse: u32,
     /// Strokes of the medium layer.
@@ -114,6 +114,8 @@ pub struct StrokeCounts {
     pub fine: u32,
     /// Frames that were counted.
     pub frames: u32,
+    /// Arguments of the indirect draw of densities: vertices of all strokes, 3 each; 1; 0; 0.
+    pub density_draw: UVec4,
 }
 
 impl StrokeCounts {
@@ -121,17 +123,18 @@ impl StrokeCounts {
         let word = |index: usize| words.get(index).copied().unwrap_or(0);
         Self {
             vertices: word(0),
-            instances: word(1),
+            draws: word(1),
             first_vertex: word(2),
             first_instance: word(3),
             born: word(4),
             dropped: word(5),
             dropped_in_all: word(6),
-            reserved: word(7),
+            instances: word(7),
             coarse: word(8),
             medium: word(9),
             fine: word(10),
             frames: word(11),
+            density_draw: UVec4::from([12, 13, 14, 15].map(word)),
         }
     }
 

@@ -13,8 +13,14 @@ use glam::{Mat4, Vec2, Vec3};
 
 /// Threads of a workgroup over strokes.
 const THREADS: u32 = 64;
-/// Columns and rows of a workgroup over pixels.
-const TILE: [u32; 2] = [16, 8];
+/// Strokes that a thread counts and lists, `CHUNK` of `painterly/stroke`.
+const CHUNK: u32 = 32;
+/// Columns and rows of pixels that a thread looks at for births, `BLOCK` of `painterly/stroke`.
+const BLOCK: [u32; 2] = [8, 4];
+/// Columns and rows of a workgroup over blocks.
+const TILE: [u32; 2] = [8, 8];
+/// Bytes before the arguments of the draw of densities among the counts.
+const DENSITY_DRAW: u64 = 48;
 /// Bytes of a stroke.
 const STROKE_BYTES: u64 = 4 * STROKE_WORDS as u64;
 
@@ -79,6 +85,7 @@ pub struct Strokes {
     buffers: [Buffer; 2],
     counts: Buffer,
     marks: Buffer,
+    birth_bits: Buffer,
     sources: Buffer,
     layer_marks: Buffer,
     order: Buffer,
@@ -101,9 +108,10 @@ impl Strokes {
         check_settings(gpu, &settings)?;
         check_style(&style, &brushes)?;
         let capacity = u64::from(settings.capacity);
-        let [width, height] = settings.source_size.map(u64::from);
         let words = |count: u64| Buffer::storage(gpu, 4 * count);
-        let first = StrokeCounts { vertices: 6, ..Default::default() };
+        let [columns, rows] = blocks_of(settings.source_size);
+        let (chunks, blocks) = (settings.capacity.div_ceil(CHUNK), columns * rows);
+        let first = StrokeCounts { draws: 1, ..Default::default() };
         let mut bytes = encase::UniformBuffer::new(Vec::<u8>::new());
         bytes.write(&first).unwrap_or_default();
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
@@ -125,9 +133,10 @@ impl Strokes {
             },
             buffers: [0; 2].map(|_| Buffer::storage(gpu, STROKE_BYTES * capacity)),
             counts: Buffer::with_bytes(gpu, bytes.as_ref(), usage),
-            marks: words(capacity + width * height + 1),
+            marks: words(u64::from(chunks) + u64::from(blocks) + 1),
+            birth_bits: words(u64::from(blocks)),
             sources: words(capacity),
-            layer_marks: words(3 * capacity + 1),
+            layer_marks: words(3 * u64::from(chunks) + 1),
             order: words(capacity),
             density: Texture::target(gpu, density_size, TARGET),
             settings,
@@ -194,6 +203,7 @@ impl Strokes {
                 ("density", (&self.density).into()),
                 ("counts", (&self.counts).into()),
                 ("marks", (&self.marks).into()),
+                ("birth_bits", (&self.birth_bits).into()),
                 ("sources", (&self.sources).into()),
                 ("layer_marks", (&self.layer_marks).into()),
                 ("order", (&self.order).into()),
@@ -206,28 +216,34 @@ impl Strokes {
         let passes = &self.passes;
         let (now, next) = (resources(strokes.into()), resources(kept.into()));
         let of_strokes = [self.settings.capacity.div_ceil(THREADS), 1, 1];
-        let [width, height] = self.settings.source_size;
-        let of_pixels = [width.div_ceil(TILE[0]), height.div_ceil(TILE[1]), 1];
+        let chunks = self.settings.capacity.div_ceil(CHUNK);
+        let of_chunks = [chunks.div_ceil(THREADS), 1, 1];
+        let [columns, rows] = blocks_of(self.settings.source_size);
+        let of_blocks = [columns.div_ceil(TILE[0]), rows.div_ceil(TILE[1]), 1];
 
         let bound = passes.update.bind_known(gpu, &now)?;
         passes.update.dispatch_groups(encoder, &bound, "update_strokes", of_strokes)?;
 
         let bound = passes.density.bind_known(gpu, &now)?;
-        self.draw_indirect(encoder, &passes.density, &bound, &self.density, Some(wgpu::Color::TRANSPARENT));
+        let none = Some(wgpu::Color::TRANSPARENT);
+        self.draw_indirect(encoder, &passes.density, &bound, &self.density, none, DENSITY_DRAW);
 
         let bound = passes.population.bind_known(gpu, &now)?;
         passes.population.dispatch_groups(encoder, &bound, "thin_strokes", of_strokes)?;
-        passes.population.dispatch_groups(encoder, &bound, "place_strokes", of_pixels)?;
-        passes.scan.record(gpu, encoder, &self.marks, self.settings.capacity + width * height + 1)?;
+        passes.population.dispatch_groups(encoder, &bound, "count_survivors", of_chunks)?;
+        passes.population.dispatch_groups(encoder, &bound, "place_strokes", of_blocks)?;
+        passes.scan.record(gpu, encoder, &self.marks, chunks + columns * rows + 1)?;
 
         let bound = passes.compact.bind_known(gpu, &now)?;
-        passes.compact.dispatch_groups(encoder, &bound, "list_survivors", of_strokes)?;
-        passes.compact.dispatch_groups(encoder, &bound, "list_births", of_pixels)?;
+        passes.compact.dispatch_groups(encoder, &bound, "list_survivors", of_chunks)?;
+        passes.compact.dispatch_groups(encoder, &bound, "list_births", of_blocks)?;
+        passes.compact.dispatch_groups(encoder, &bound, "count_strokes", [1, 1, 1])?;
         passes.compact.dispatch_groups(encoder, &bound, "gather_strokes", of_strokes)?;
-        passes.scan.record(gpu, encoder, &self.layer_marks, 3 * self.settings.capacity + 1)?;
 
         let bound = passes.order.bind_known(gpu, &next)?;
-        passes.order.dispatch_groups(encoder, &bound, "order_strokes", of_strokes)?;
+        passes.order.dispatch_groups(encoder, &bound, "count_layers", of_chunks)?;
+        passes.scan.record(gpu, encoder, &self.layer_marks, 3 * chunks + 1)?;
+        passes.order.dispatch_groups(encoder, &bound, "order_strokes", of_chunks)?;
         self.buffers.swap(0, 1);
         Ok(())
     }
@@ -254,7 +270,7 @@ impl Strokes {
             ("brush_sampler", (&self.brushes.sampler).into()),
         ];
         let bound = self.passes.draw.bind(gpu, &resources)?;
-        self.draw_indirect(encoder, &self.passes.draw, &bound, picture, None);
+        self.draw_indirect(encoder, &self.passes.draw, &bound, picture, None, 0);
         Ok(())
     }
 
@@ -289,7 +305,8 @@ impl Strokes {
 
     /// Bytes of all buffers and of the density.
     pub fn memory(&self) -> u64 {
-        let one = [&self.counts, &self.marks, &self.sources, &self.layer_marks, &self.order];
+        let one =
+            [&self.counts, &self.marks, &self.birth_bits, &self.sources, &self.layer_marks, &self.order];
         let buffers = one.into_iter().chain(&self.buffers).map(|buffer| buffer.raw.size()).sum::<u64>();
         buffers + self.density.memory()
     }
@@ -301,6 +318,7 @@ impl Strokes {
         bound: &crate::pass::Bound,
         target: &Texture,
         clear: Option<wgpu::Color>,
+        arguments: u64,
     ) {
         let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
         let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -314,7 +332,7 @@ impl Strokes {
             ..Default::default()
         });
         pass.set(&mut render, bound);
-        render.draw_indirect(&self.counts.raw, 0);
+        render.draw_indirect(&self.counts.raw, arguments);
     }
 
     fn next_frame(&self, step: &StrokeStep) -> Result<StrokeFrame, StrokeError> {
@@ -348,6 +366,11 @@ impl Strokes {
     }
 }
 
+/// Columns and rows of blocks.
+fn blocks_of([width, height]: [u32; 2]) -> [u32; 2] {
+    [width.div_ceil(BLOCK[0]), height.div_ceil(BLOCK[1])]
+}
+
 fn check_size_of(what: &'static str, texture: &Texture, expected: [u32; 2]) -> Result<(), StrokeError> {
     let [width, height, _] = texture.size();
     if [width, height] == expected {
@@ -377,10 +400,8 @@ fn check_settings(gpu: &Gpu, settings: &StrokeSettings) -> Result<(), StrokeErro
         }
     }
     let bytes = u64::from(gpu.limits.max_storage_buffer_binding_size as u32);
-    let [width, height] = settings.source_size.map(u64::from);
-    let by_marks = (bytes / 4).saturating_sub(width * height + 1);
     let by_groups = u64::from(gpu.limits.max_compute_workgroups_per_dimension) * u64::from(THREADS);
-    let limit = (bytes / STROKE_BYTES).min(by_marks).min(by_groups) as u32;
+    let limit = (bytes / STROKE_BYTES).min(by_groups) as u32;
     if settings.capacity == 0 || settings.capacity > limit {
         return Err(StrokeError::Capacity { given: settings.capacity, limit });
     }

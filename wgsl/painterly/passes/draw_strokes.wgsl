@@ -30,10 +30,10 @@ struct Corner {
 }
 
 @vertex
-fn vertex_stroke(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Corner {
-    let number = order[min(instance, arrayLength(&order) - 1u)];
+fn vertex_stroke(@builtin(vertex_index) vertex: u32) -> Corner {
+    let number = order[min(vertex / 6u, arrayLength(&order) - 1u)];
     let stroke = strokes[min(number, arrayLength(&strokes) - 1u)];
-    let corner = quad_corner(vertex);
+    let corner = quad_corner(vertex % 6u);
     let place = corner_position(stroke, corner, frame.picture_size);
     let color = stroke.color * tint_factor(stroke.hash, style.color_variation);
     return Corner(

@@ -2,8 +2,8 @@
 // summary: Strokes that are kept, in their order, then those that are born, closely packed into another buffer.
 // source: Ramalhao (2010), 4.2.2, 4.2.4: what the geometry shaders' output streams did, here by prefix sums.
 // note: The same input gives the same strokes, bit for bit. What does not fit is dropped: new strokes only, and counted.
-// note: Dispatch list_survivors over the capacity, list_births over the pixels, gather_strokes over the capacity; then
-// note: `core/scan` of 3 * capacity + 1 `layer_marks`.
+// note: Dispatch list_survivors over chunks of 32 strokes of the capacity, list_births over blocks of 8 by 4 pixels,
+// note: count_strokes once, gather_strokes over the capacity.
 // definition CURVATURE: strokes may follow the direction of greatest curvature.
 // binding color: premultiplied linear RGB, alpha 1 where there is a surface; rgba16float.
 // binding surface: unit normal in the world, 0 where there is no surface, and gradient magnitude; rgba16float.
@@ -17,11 +17,12 @@
 // binding sources: out, of each new place, number of the stroke, or capacity + number of the pixel that gives birth.
 // binding kept: out, the strokes.
 // binding counts: out, how many there are.
-// binding layer_marks: out, for each layer and place 1 where a stroke of that layer is, and a 0 at the end.
+// binding birth_bits: of each block the pixels that give birth, a bit each.
 
 #import airlight::core::camera::{Camera, view_ray}
 #import airlight::painterly::stroke::{
-    Stroke, StrokeFrame, StrokeStyle, StrokeCounts, STROKE_STAYS, LAYERS, of_layer
+    Stroke, StrokeFrame, StrokeStyle, StrokeCounts, STROKE_STAYS, STROKE_GONE, LAYERS, CHUNK, BLOCK,
+    of_layer, chunks_of, blocks_of
 }
 #import airlight::painterly::stroke_expand::varied_size
 #import airlight::painterly::stroke_placement::{layer_of, placement_hashes, first_in_queue, place_in_queue}
@@ -36,50 +37,69 @@
 @group(#{GROUP}) @binding(9) var<storage, read_write> sources: array<u32>;
 @group(#{GROUP}) @binding(10) var<storage, read_write> kept: array<Stroke>;
 @group(#{GROUP}) @binding(11) var<storage, read_write> counts: StrokeCounts;
-@group(#{GROUP}) @binding(12) var<storage, read_write> layer_marks: array<u32>;
+@group(#{GROUP}) @binding(12) var<storage, read> birth_bits: array<u32>;
 
 /// Strokes that fit into all buffers.
 fn capacity() -> u32 {
     return min(frame.capacity, min(arrayLength(&sources), min(arrayLength(&strokes), arrayLength(&kept))));
 }
 
-/// Writes where the mark `index` of all comes from, if it is one and fits.
-fn list(index: u32, source: u32) {
-    let place = marks[min(index, arrayLength(&marks) - 1u)];
-    let next = marks[min(index + 1u, arrayLength(&marks) - 1u)];
-    if next != place && place < capacity() {
-        sources[place] = source;
-    }
+/// Place of the first of a chunk or block; of the end, how many there are.
+fn place_of(mark: u32) -> u32 {
+    return marks[min(mark, arrayLength(&marks) - 1u)];
 }
 
 @compute @workgroup_size(64)
 fn list_survivors(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x == 0u {
-        let size = source_size();
-        let all = marks[min(frame.capacity + size.x * size.y, arrayLength(&marks) - 1u)];
-        let survivors = marks[min(frame.capacity, arrayLength(&marks) - 1u)];
-        let fit = min(all, capacity());
-        counts.instances = fit;
-        counts.born = fit - min(survivors, fit);
-        counts.dropped = all - fit;
-        counts.dropped_in_all += all - fit;
-        counts.frames += 1u;
-    }
-    if id.x < frame.capacity {
-        list(id.x, id.x);
+    let present = min(counts.instances, min(frame.capacity, arrayLength(&strokes)));
+    var place = place_of(id.x);
+    let first = id.x * CHUNK;
+    let end = min(first + CHUNK, present);
+    for (var index = first; index < end; index++) {
+        let survives = strokes[index].state != STROKE_GONE;
+        if survives && place < capacity() {
+            sources[place] = index;
+        }
+        place += select(0u, 1u, survives);
     }
 }
 
-@compute @workgroup_size(16, 8)
+@compute @workgroup_size(8, 8)
 fn list_births(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = source_size();
-    if any(id.xy >= size) {
+    let blocks = blocks_of(size);
+    if any(id.xy >= blocks) {
         return;
     }
-    let pixels = size.x * size.y;
-    let pixel = id.y * size.x + id.x;
-    let place = place_in_queue(pixel, first_in_queue(pixels, frame.frame, frame.seed), pixels);
-    list(frame.capacity + place, frame.capacity + pixel);
+    let all = blocks.x * blocks.y;
+    let block = id.y * blocks.x + id.x;
+    let queue = place_in_queue(block, first_in_queue(all, frame.frame, frame.seed), all);
+    var place = place_of(chunks_of(frame.capacity) + queue);
+    for (var left = birth_bits[min(block, arrayLength(&birth_bits) - 1u)]; left != 0u; left &= left - 1u) {
+        let bit = firstTrailingBit(left);
+        let pixel = id.xy * BLOCK + vec2<u32>(bit % BLOCK.x, bit / BLOCK.x);
+        if place < capacity() {
+            sources[place] = frame.capacity + pixel.y * size.x + pixel.x;
+        }
+        place++;
+    }
+}
+
+@compute @workgroup_size(1)
+fn count_strokes() {
+    let blocks = blocks_of(source_size());
+    let chunks = chunks_of(frame.capacity);
+    let all = place_of(chunks + blocks.x * blocks.y);
+    let survivors = place_of(chunks);
+    let fit = min(all, capacity());
+    counts.instances = fit;
+    counts.vertices = 6u * fit;
+    counts.draws = 1u;
+    counts.density_draw = vec4<u32>(3u * fit, 1u, 0u, 0u);
+    counts.born = fit - min(survivors, fit);
+    counts.dropped = all - fit;
+    counts.dropped_in_all += all - fit;
+    counts.frames += 1u;
 }
 
 /// The stroke that a pixel gives birth to.
@@ -108,29 +128,16 @@ fn newborn(pixel: vec2<u32>) -> Stroke {
 @compute @workgroup_size(64)
 fn gather_strokes(@builtin(global_invocation_id) id: vec3<u32>) {
     let index = id.x;
-    if index >= capacity() {
-        return;
-    }
-    let present = index < counts.instances;
-    let source = select(0u, sources[index], present);
-    let survives = source < frame.capacity;
-    var stroke = strokes[min(source, frame.capacity - 1u)];
-    // A loop: software adapters run both sides of a branch.
-    for (var births = select(1u, 0u, survives); births > 0u; births--) {
-        let pixel = source - frame.capacity;
-        let columns = source_size().x;
-        stroke = newborn(vec2<u32>(pixel % columns, pixel / columns));
-    }
-    if present {
-        kept[index] = stroke;
-    }
-    for (var layer = 0u; layer < LAYERS; layer++) {
-        let mark = layer * frame.capacity + index;
-        if mark < arrayLength(&layer_marks) {
-            layer_marks[mark] = select(0u, 1u, present && stroke.layer == layer);
+    // Loops: software adapters run both sides of a branch.
+    for (var there = select(0u, 1u, index < min(counts.instances, capacity())); there > 0u; there--) {
+        let source = sources[index];
+        let survives = source < frame.capacity;
+        var stroke = strokes[min(source, frame.capacity - 1u)];
+        for (var births = select(1u, 0u, survives); births > 0u; births--) {
+            let pixel = source - frame.capacity;
+            let columns = source_size().x;
+            stroke = newborn(vec2<u32>(pixel % columns, pixel / columns));
         }
-    }
-    if index == 0u && LAYERS * frame.capacity < arrayLength(&layer_marks) {
-        layer_marks[LAYERS * frame.capacity] = 0u;
+        kept[index] = stroke;
     }
 }

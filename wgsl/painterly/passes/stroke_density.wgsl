@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Density of strokes: their quads, added up, a layer of strokes a channel.
 // source: Ramalhao (2010), 4.2.4.
-// note: Drawn indirectly with `counts` as arguments into an rgba16float target that is cleared to 0, blended as source +
+// note: Drawn indirectly with `density_draw` of `counts` as arguments, a triangle around each quad, since two small ones cost more, into an rgba16float target that is cleared to 0, blended as source +
 // note: destination, for core WebGPU blends no 32-bit floats. A sum of n strokes is rounded n times by at most 2^-10 of it, for
 // note: adapters may round half floats to nearest or towards 0.
 // note: The target may be a fraction of the picture: density changes over the width of a stroke.
@@ -14,7 +14,7 @@
 #import airlight::painterly::stroke::{Stroke, StrokeFrame, StrokeStyle, STROKE_GONE, of_layer, target_opacity}
 #import airlight::painterly::stroke_density::density_of_stroke
 #import airlight::painterly::stroke_expand::{
-    quad_corner, corner_position, clip_from_picture, brush_coordinates, brush_layer
+    corner_position, clip_from_picture, brush_coordinates, brush_layer
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> frame: StrokeFrame;
@@ -31,10 +31,13 @@ struct Corner {
 }
 
 @vertex
-fn vertex_density(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Corner {
-    let stroke = strokes[min(instance, arrayLength(&strokes) - 1u)];
-    let corner = quad_corner(vertex);
-    let place = corner_position(stroke, corner, frame.picture_size);
+fn vertex_density(@builtin(vertex_index) vertex: u32) -> Corner {
+    let stroke = strokes[min(vertex / 3u, arrayLength(&strokes) - 1u)];
+    // The corner 0 of the quad, and those that lie twice as far from it along its sides.
+    let corner = vertex % 3u;
+    let near = corner_position(stroke, 0u, frame.picture_size);
+    let place = near + 2.0 * (corner_position(stroke, corner, frame.picture_size) - near);
+    let first = brush_coordinates(0u, stroke.hash);
     let fades_to = target_opacity(style, stroke.layer, stroke.state);
     let density = density_of_stroke(style.density_unit, stroke.opacity, fades_to, style.anticipation, 1.0);
     // What adds nothing has no area, and lies beside the picture.
@@ -42,7 +45,7 @@ fn vertex_density(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i
     let channel = vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(stroke.layer);
     return Corner(
         select(vec4<f32>(-2.0, -2.0, 0.5, 1.0), clip_from_picture(place, frame.picture_size), counts),
-        brush_coordinates(corner, stroke.hash),
+        first + 2.0 * (brush_coordinates(corner, stroke.hash) - first),
         brush_layer(of_layer(style.brush, stroke.layer), stroke.hash, textureNumLayers(brushes)),
         select(vec4<f32>(0.0), vec4<f32>(density), channel)
     );
@@ -50,5 +53,7 @@ fn vertex_density(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i
 
 @fragment
 fn fragment_density(corner: Corner) -> @location(0) vec4<f32> {
-    return corner.density * textureSample(brushes, brush_sampler, corner.coordinates, corner.brush).a;
+    let opacity = textureSample(brushes, brush_sampler, corner.coordinates, corner.brush).a;
+    let inside = all(corner.coordinates >= vec2<f32>(0.0)) && all(corner.coordinates <= vec2<f32>(1.0));
+    return corner.density * select(0.0, opacity, inside);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Moves strokes with their surface, and lets them take part of what the ray caster sees there, or fade out.
 // source: Ramalhao (2010), 4.2.3.
-// note: First of a frame; then `stroke_density`, `stroke_population`, `core/scan`, `stroke_compact`, `core/scan`,
-// note: `stroke_order`, `draw_strokes`. Nothing is read back: counts stay in `counts` and drive the draws.
+// note: First of a frame; then `stroke_density`, `stroke_population`, `core/scan`, `stroke_compact`, `stroke_order` with a
+// note: `core/scan` in it, `draw_strokes`. Nothing is read back: counts stay in `counts` and drive the draws.
 // note: A stroke looks at the four pixels around its place and takes the nearest that shows its surface, and its layer if any
 // note: does: at a silhouette the nearest of all may show the background, and beside another layer that one.
 // definition CURVATURE: strokes may follow the direction of greatest curvature.

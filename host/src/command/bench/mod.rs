@@ -6,6 +6,8 @@ mod choices;
 mod light_rays;
 mod media_pictures;
 mod painterly;
+mod painterly_stroke_costs;
+mod painterly_strokes;
 mod resolution;
 mod scattering;
 mod stylize;
@@ -55,7 +57,7 @@ pub struct Row {
     pub name: String,
     /// Its value: the median of the samples.
     pub value: f64,
-    /// `ratio`, `ms`, `MB`, `steps` or `fraction`.
+    /// `ratio`, `ms`, `MB`, `steps`, `fraction`, or what is counted.
     pub unit: &'static str,
     /// Which way is better.
     pub better: &'static str,

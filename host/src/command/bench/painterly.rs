@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The named figures of the system `painterly`: ray casting of iso-surfaces.
+//! The named figures of the system `painterly`: ray casting of iso-surfaces; strokes on them lie in files of their own.
 
-use super::{Quality, Row, Work, figure, interleaved, ratio, time};
+use super::painterly_strokes::Head;
+use super::{
+    Quality, Row, Work, figure, interleaved, painterly_stroke_costs, painterly_strokes, ratio, time,
+};
 use crate::command::{CommandError, progress, scans};
 use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
 use crate::data::{Volume, marschner_lobb};
@@ -18,7 +21,7 @@ use airlight_tests::statistics::mean;
 use glam::Vec3;
 
 /// Name of the system in its rows.
-const SYSTEM: &str = "painterly";
+pub(super) const SYSTEM: &str = "painterly";
 /// The picture of the costs.
 const SIZE: [u32; 2] = [1280, 800];
 /// Every how many of its pixels hits are sought in f64.
@@ -165,7 +168,7 @@ impl Scene {
 }
 
 /// A table that rises from nothing at `from` to opacity 1 at `to`, in 64ths of the range.
-fn rising(from: usize, to: usize) -> Vec<[f32; 4]> {
+pub(super) fn rising(from: usize, to: usize) -> Vec<[f32; 4]> {
     let opacity = |i: usize| ((i as f32 - from as f32) / (to - from) as f32).clamp(0.0, 1.0);
     (0..65).map(|i| [0.9, 0.8, 0.7, opacity(i)]).collect()
 }
@@ -185,7 +188,7 @@ fn signal(gpu: &Gpu, shaders: &Shaders, side: u32) -> Result<Scene, CommandError
 
 /// Every named figure.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {
-    let bar = progress::bar(4, quiet);
+    let bar = progress::bar(6, quiet);
     let mut rows = Vec::new();
     for (name, scene) in [
         ("stent", stent(gpu, shaders)?),
@@ -198,6 +201,13 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
     }
     bar.set_message("targets and sizes");
     rows.extend(targets(gpu, shaders)?);
+    bar.inc(1);
+    let head = Head::new(gpu)?;
+    bar.set_message("strokes, a turn");
+    rows.extend(painterly_strokes::rows(gpu, shaders, &head)?);
+    bar.inc(1);
+    bar.set_message("strokes, costs");
+    rows.extend(painterly_stroke_costs::rows(gpu, shaders, &head)?);
     bar.finish_and_clear();
     Ok(rows)
 }
