@@ -73,20 +73,12 @@ fn camera(direction: Vec3, parallel: bool) -> (ReferenceCamera, Camera) {
 
 /// A light that goes in a direction at the cloud's middle, for both.
 fn light(direction: Vec3, spot: bool, volume: &Volume) -> (ReferenceLight, Light) {
-    let rgb = RADIANCE.map(|x| x as f32).into();
+    let rgb = glam::Vec3::from(RADIANCE.map(|x| x as f32));
     if spot {
         let position = direction * -8.0;
         let [outer, inner] = [25.0_f32, 16.0];
-        let host = Light::spot(
-            host_vector(position),
-            glam::Vec3::ZERO,
-            outer,
-            inner,
-            30.0 * glam::Vec3::from(rgb),
-            0.1,
-            1.0,
-            20.0,
-        );
+        let host =
+            Light::spot(host_vector(position), glam::Vec3::ZERO, outer, inner, 30.0 * rgb, 0.1, 1.0, 20.0);
         let [inner, outer] = [inner, outer].map(|degrees| f64::from(degrees).to_radians());
         return (
             ReferenceLight::Spot { position, axis: direction, inner, outer, radius: 0.1 },

@@ -50,9 +50,9 @@ impl Shot {
         bits(&self.picture) == bits(&other.picture) && bits(&self.shadow) == bits(&other.shadow)
     }
 
-    /// Whether nothing is NaN, infinite or negative.
+    /// Whether nothing is NaN, infinite or negative, nor the greatest number, which the last pass makes of a NaN.
     pub fn is_sound(&self) -> bool {
-        self.picture.iter().chain(&self.shadow).all(|value| value.is_finite() && *value >= 0.0)
+        self.picture.iter().chain(&self.shadow).all(|value| (0.0..65504.0).contains(value))
     }
 }
 
