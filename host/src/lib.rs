@@ -21,6 +21,7 @@ pub mod scattering;
 #[cfg(feature = "command")]
 pub mod scenes;
 mod shaders;
+pub mod splatting;
 mod stage;
 pub mod stylize;
 pub mod transmittance;

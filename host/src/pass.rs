@@ -6,7 +6,7 @@ mod bind;
 pub use bind::{Bound, Resource};
 
 use crate::gpu::{Gpu, GpuError};
-use crate::resource::Texture;
+use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::{Binding, Composed, Definitions, Stage};
 use bind::layouts;
@@ -324,18 +324,37 @@ impl Pass {
         entry_point: &str,
         groups: [u32; 3],
     ) -> Result<(), PassError> {
+        record(encoder, &self.entry(entry_point)?.pipeline, bound, groups);
+        Ok(())
+    }
+
+    /// Like [`Pass::dispatch_groups`] over as many groups as three words in `groups` say, from byte `offset` on, a multiple of 4.
+    ///
+    /// # Errors
+    /// [`PassError::UnknownEntryPoint`].
+    pub fn dispatch_indirect(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        bound: &Bound,
+        entry_point: &str,
+        (groups, offset): (&Buffer, u64),
+    ) -> Result<(), PassError> {
+        let entry = self.entry(entry_point)?;
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&entry.pipeline);
+        pass.set_bind_group(0, &bound.group, &[]);
+        pass.dispatch_workgroups_indirect(&groups.raw, offset);
+        Ok(())
+    }
+
+    fn entry(&self, name: &str) -> Result<&ComputeEntry, PassError> {
         let entries: &[ComputeEntry] =
             if let Pipelines::Compute(entries) = &self.pipelines { entries } else { &[] };
-        let Some(entry) = entries.iter().find(|entry| entry.name == entry_point) else {
+        entries.iter().find(|entry| entry.name == name).ok_or_else(|| {
             let names: Vec<_> = entries.iter().map(|entry| entry.name.as_str()).collect();
-            return Err(PassError::UnknownEntryPoint {
-                pass: self.name.clone(),
-                name: entry_point.to_owned(),
-                expected: names.join(", "),
-            });
-        };
-        record(encoder, &entry.pipeline, bound, groups);
-        Ok(())
+            let (pass, name) = (self.name.clone(), name.to_owned());
+            PassError::UnknownEntryPoint { pass, name, expected: names.join(", ") }
+        })
     }
 
     /// Records a pass built by [`Pass::picture`] over all pixels of `target`.

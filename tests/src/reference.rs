@@ -9,5 +9,6 @@ pub mod painterly;
 pub mod phase;
 pub mod prefix_sum;
 pub mod scattering;
+pub mod splatting;
 pub mod stylize;
 pub mod transmittance;

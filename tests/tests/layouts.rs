@@ -12,6 +12,9 @@ use airlight::painterly::{
     StrokeStyle, SurfaceLighting,
 };
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
+use airlight::splatting::{
+    Kernel, SheetLighting, SheetNumber, SheetTargets, Sheets, SplatBatch, SplatVolume,
+};
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
     TransferShare, Window,
@@ -19,7 +22,7 @@ use airlight::stylize::{
 use airlight::transmittance::{MediumLighting, SplatTarget};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
-use glam::{Mat4, UVec4, Vec2, Vec3, Vec4};
+use glam::{Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
@@ -97,6 +100,32 @@ impl Sentinel for Vec4 {
     }
     fn words() -> Vec<(u32, u32)> {
         vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits()), (12, 4.5_f32.to_bits())]
+    }
+}
+
+impl Sentinel for UVec2 {
+    const TYPE: &'static str = "vec2<u32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1, 2)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1), (4, 2)]
+    }
+}
+
+impl Sentinel for UVec3 {
+    const TYPE: &'static str = "vec3<u32>";
+    fn zero() -> Self {
+        Self::ZERO
+    }
+    fn sentinel() -> Self {
+        Self::new(1, 2, 3)
+    }
+    fn words() -> Vec<(u32, u32)> {
+        vec![(0, 1), (4, 2), (8, 3)]
     }
 }
 
@@ -287,6 +316,17 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         vertices: u32, draws: u32, first_vertex: u32, first_instance: u32, born: u32, dropped: u32,
         dropped_in_all: u32, instances: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
         density_draw: UVec4,
+    });
+    twin!(twins: Sheets {
+        normal: Vec3, first: f32, thickness: f32, count: u32, span: u32, front_to_back: u32,
+    });
+    twin!(twins: SheetTargets { picture: UVec2, shadow: UVec2 });
+    twin!(twins: SheetNumber { index: u32, reserved_a: u32, reserved_b: u32, reserved_c: u32 });
+    twin!(twins: Kernel { sigma: f32, radius: f32, scale: f32, edge: f32 });
+    twin!(twins: SplatVolume { world_from_voxel: Mat4, voxel_from_world: Mat4, size: UVec3, threshold: f32 });
+    twin!(twins: SplatBatch { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: SheetLighting {
+        ambient: Vec3, extinction: f32, g: f32, diffuse: f32, specular: f32, shininess: f32,
     });
     twins
 }

@@ -134,6 +134,10 @@ modules! {
         "core::camera", "painterly::iso_surface", "painterly::stroke", "painterly::stroke_expand"
     ],
     painterly::stroke_targets ["core::finite", "painterly::stroke_update"],
+    splatting::sheets [],
+    splatting::footprint [],
+    splatting::splat ["core::camera"],
+    splatting::sheet_shading ["core::phase"],
     scattering::rectify ["core::camera", "core::fourier_basis"],
     scattering::rows [],
     scattering::projective ["core::fourier_basis", "core::prefix_sum"],
@@ -211,6 +215,11 @@ passes! {
     painterly/stroke_order,
     painterly/underpaint,
     painterly/draw_strokes,
+    splatting/find_splats,
+    splatting/order_splats,
+    splatting/splat_sheet,
+    splatting/light_sheet,
+    splatting/composite_sheet,
     scattering/slices,
     scattering/rectify,
     scattering/rectify_projective,
@@ -240,4 +249,4 @@ passes! {
     stylize/evaluate,
 }
 
-systems![core, transmittance, painterly, scattering, stylize];
+systems![core, transmittance, painterly, splatting, scattering, stylize];

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A small cloud in sheets of splats against an f64 ray marcher with the same optical model, for more and more sheets, and
+//! sheets from front to back against those from back to front.
+//!
+//! `--nocapture` prints what was measured.
+#![allow(clippy::unwrap_used)]
+
+#[path = "support/gpu.rs"]
+mod gpu;
+#[path = "support/sheets.rs"]
+mod sheets;
+
+use airlight::core::{Camera, Light};
+use airlight::data::{Volume, cloud};
+use airlight::splatting::{SheetFrame, SheetLighting, SheetSettings};
+use airlight_tests::linear::{Mat4, Vec3};
+use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView, View};
+use airlight_tests::reference::light::Light as ReferenceLight;
+use airlight_tests::reference::splatting::{Field, Kernel, Medium, Scene};
+use gpu::{host_camera, host_vector};
+use sheets::{Shot, colored, shoot, splats};
+
+const SIZE: [u32; 2] = [64, 40];
+const ALBEDO: [[f64; 3]; 2] = [[0.95, 0.6, 0.3], [0.5, 0.7, 0.9]];
+const MEDIUM: Medium = Medium { albedo: ALBEDO, extinction: 3.0, ambient: [0.02, 0.03, 0.05], g: 0.4 };
+const RADIANCE: [f64; 3] = [9.0, 8.0, 6.0];
+
+/// Values up to 1.
+fn small_cloud() -> Volume {
+    let mut volume = cloud([32, 16, 28], 3);
+    for value in &mut volume.values {
+        *value /= 3.0;
+    }
+    volume
+}
+
+fn field_of(volume: &Volume) -> Field {
+    let size = volume.size.map(|side| side as usize);
+    let columns: [[f64; 4]; 4] =
+        volume.world_from_unit.to_cols_array_2d().map(|column| column.map(f64::from));
+    // Voxel i lies at (i + 0.5) / size of the box 0..1.
+    let mut voxels = columns;
+    for axis in 0..3 {
+        for row in 0..4 {
+            voxels[axis][row] = columns[axis][row] / size[axis] as f64;
+            voxels[3][row] += 0.5 * voxels[axis][row];
+        }
+    }
+    let world_from_voxel = Mat4 { columns: voxels };
+    Field {
+        size,
+        values: volume.values.iter().copied().map(f64::from).collect(),
+        world_from_voxel,
+        voxel_from_world: world_from_voxel.inverse().unwrap(),
+        kernel: Kernel::new(0.7, 2.25),
+    }
+}
+
+/// The camera that looks at the cloud's middle in a direction, for both.
+fn camera(direction: Vec3, parallel: bool) -> (ReferenceCamera, Camera) {
+    let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
+    let (eye, target, up) = (direction * -9.0, Vec3::default(), Vec3::new(0.0, 1.0, 0.0));
+    let reference = if parallel {
+        let view =
+            OrthographicView { eye, target, up, half_height: 2.1, aspect, depth: 20.0, reversed: false };
+        ReferenceCamera::orthographic(&view)
+    } else {
+        let view = View { eye, target, up, fov_y: 0.5, aspect, near: 0.5, far: 40.0, reversed: true };
+        ReferenceCamera::perspective(&view)
+    };
+    (reference, Camera { projection: u32::from(parallel), ..host_camera(&reference, SIZE) })
+}
+
+/// A light that goes in a direction at the cloud's middle, for both.
+fn light(direction: Vec3, spot: bool, volume: &Volume) -> (ReferenceLight, Light) {
+    let rgb = glam::Vec3::from(RADIANCE.map(|x| x as f32));
+    if spot {
+        let position = direction * -8.0;
+        let [outer, inner] = [25.0_f32, 16.0];
+        let host =
+            Light::spot(host_vector(position), glam::Vec3::ZERO, outer, inner, 30.0 * rgb, 0.1, 1.0, 20.0);
+        let [inner, outer] = [inner, outer].map(|degrees| f64::from(degrees).to_radians());
+        return (
+            ReferenceLight::Spot { position, axis: direction, inner, outer, radius: 0.1 },
+            host.unwrap(),
+        );
+    }
+    let bounds = volume.bounds();
+    let towards = direction * -1.0;
+    let host = Light::directional(host_vector(towards), rgb, bounds.min - 0.5, bounds.max + 0.5);
+    (ReferenceLight::Directional { towards }, host.unwrap())
+}
+
+fn directions(degrees: f64) -> [Vec3; 2] {
+    let view = Vec3::new(0.35, -0.3, -0.9).normalised();
+    let across = view.cross(Vec3::new(0.3, 0.9, 0.1)).normalised().cross(view);
+    let angle = degrees.to_radians();
+    [view, view * angle.cos() + across * -angle.sin()]
+}
+
+fn lighting() -> SheetLighting {
+    let ambient = MEDIUM.ambient.map(|x| x as f32).into();
+    SheetLighting { ambient, g: MEDIUM.g as f32, ..SheetLighting::new(MEDIUM.extinction as f32) }
+}
+
+/// Root of the mean square of differences of radiance over that of the truth, and greatest difference of transmittance.
+fn differences<'a>(found: &Shot, truth: impl Iterator<Item = &'a [f64; 4]>) -> [f64; 2] {
+    let (mut error, mut all, mut clear) = (0.0, 0.0, 0.0_f64);
+    for (found, truth) in found.picture.chunks_exact(4).zip(truth) {
+        for channel in 0..3 {
+            error += (f64::from(found[channel]) - truth[channel]).powi(2);
+            all += truth[channel].powi(2);
+        }
+        clear = clear.max((f64::from(found[3]) - truth[3]).abs());
+    }
+    assert!(all > 0.0);
+    [(error / all).sqrt(), clear]
+}
+
+#[test]
+fn a_cloud_is_what_a_ray_marcher_makes_of_it() {
+    let _turn = gpu::turn();
+    let volume = small_cloud();
+    let field = field_of(&volume);
+    let splats = splats(&volume);
+    let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));
+    let size = SIZE.map(|side| side as usize);
+    for (degrees, parallel, spot) in
+        [(40.0, false, false), (40.0, true, true), (130.0, true, false), (130.0, false, true)]
+    {
+        let name = format!("{degrees} degrees, parallel {parallel}, spot {spot}");
+        let [view, way] = directions(degrees);
+        let (reference, camera) = camera(view, parallel);
+        let (reference_light, light) = light(way, spot, &volume);
+        let radiance = RADIANCE.map(|x| if spot { 30.0 * x } else { x });
+        let scene = Scene { field: &field, medium: MEDIUM, light: reference_light, radiance, step: 0.08 };
+        let truth = scene.picture(&reference, size);
+        let frame = SheetFrame { camera, light, lighting: lighting() };
+        let errors = [16, 32, 64, 128].map(|count| {
+            let settings = SheetSettings { count, light_size: [192; 2], ..SheetSettings::default() };
+            let shot = shoot(&splats, &transfer, settings, &frame);
+            let [radiance, transmittance] = differences(&shot, truth.iter());
+            println!("{name}, {count} sheets: radiance {radiance:.5}, transmittance {transmittance:.5}");
+            radiance
+        });
+        assert!(errors[1] <= 0.03 && errors[3] <= 0.005, "{name}: {errors:?}");
+        assert!(errors.windows(2).all(|pair| pair[1] < pair[0]), "{name}: {errors:?}");
+    }
+}
+
+#[test]
+fn the_reference_has_converged() {
+    let volume = small_cloud();
+    let field = field_of(&volume);
+    let [view, way] = directions(40.0);
+    let (camera, _) = camera(view, false);
+    let (light, _) = light(way, false, &volume);
+    let scene = |step| Scene { field: &field, medium: MEDIUM, light, radiance: RADIANCE, step };
+    let mut worst = 0.0_f64;
+    for (x, y) in [(32, 20), (20, 15), (40, 28), (28, 24)] {
+        let ndc = ReferenceCamera::pixel_ndc(x, y, 64, 40);
+        let [coarse, fine] = [0.08, 0.02].map(|step| scene(step).ray(camera.origin(ndc), camera.ray(ndc)));
+        for channel in 0..4 {
+            worst = worst.max((coarse[channel] / fine[channel] - 1.0).abs());
+        }
+    }
+    println!("a quarter of the step changes {worst:.5}");
+    assert!(worst < 0.005, "{worst}");
+}
+
+#[test]
+fn front_to_back_agrees_with_back_to_front() {
+    let _turn = gpu::turn();
+    let volume = small_cloud();
+    let splats = splats(&volume);
+    let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));
+    // A fifth of a degree turns the light by next to nothing and the sheets by a right angle: what differs is that the same
+    // field is cut along other planes, which falls with the number of sheets.
+    let mut differ = Vec::new();
+    for count in [32, 128] {
+        let [front, back] = [89.9, 90.1].map(|degrees| {
+            let [view, way] = directions(degrees);
+            let (_, camera) = camera(view, false);
+            let (_, light) = light(way, false, &volume);
+            let settings = SheetSettings { count, light_size: [192; 2], ..SheetSettings::default() };
+            shoot(&splats, &transfer, settings, &SheetFrame { camera, light, lighting: lighting() })
+        });
+        let back: Vec<[f64; 4]> =
+            back.picture.chunks_exact(4).map(|pixel| [0, 1, 2, 3].map(|i| f64::from(pixel[i]))).collect();
+        let [radiance, transmittance] = differences(&front, back.iter());
+        println!("{count} sheets: radiance {radiance:.5}, transmittance {transmittance:.5}");
+        differ.push(radiance);
+    }
+    assert!(differ[1] < 0.02 && differ[1] < 0.6 * differ[0], "{differ:?}");
+}

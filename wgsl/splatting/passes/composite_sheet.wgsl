@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: A sheet of the volume as the eye sees it, lit through the shadow buffer, put into the picture; and the whole picture.
+// source: Zhang and Crawfis, 4.1, steps 16 to 20.
+// note: Dispatch composite_sheet for each sheet over the picture, indirectly: a sheet without splats runs nothing; then show_sheets.
+// note: What adds up is radiance and optical depth, in 32 bits, whatever blending rounds; all zero before the first sheet.
+// note: A sheet is lit by what light arrives at it: the shadow buffer as the sheets before have left it, and the mean over the
+// note: sheet's own depth.
+// definition PHONG: the medium reflects like surfaces across its gradient, instead of scattering like droplets.
+// binding camera: the eye's camera.
+// binding light_camera: the light as a camera.
+// binding light: the light.
+// binding sheets: the sheets.
+// binding lighting: extinction, phase function and reflection.
+// binding number: which sheet.
+// binding before: mean values of the sheet nearer to the light, rgba16float; with PHONG only.
+// binding sheet: mean values of the sheet along the view rays, rgba16float.
+// binding behind: mean values of the sheet farther from the light, rgba16float; with PHONG only.
+// binding light_sheet: mean values of the sheet along the light rays, rgba16float.
+// binding shadow: what arrives of the light at the sheet, linear RGB, rgba16float.
+// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding linear_sampler: linear, clamped to the edge.
+// binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
+// binding picture: out of show_sheets, radiance of all sheets, and the transmittance to what lies behind them.
+
+#import airlight::core::camera::{Camera, Ray, view_ray, ndc_from_pixel}
+#import airlight::core::light::{Light, direction_to_light, light_falloff, texels_from_clip}
+#import airlight::splatting::sheets::{Sheets, SheetNumber, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
+#import airlight::splatting::sheet_shading::{SheetLighting, classified, mean_transmittance}
+#ifdef PHONG
+#import airlight::splatting::sheet_shading::{gradient_of_changes, phong_radiance}
+#else
+#import airlight::splatting::sheet_shading::scattered_radiance
+#endif
+
+@group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
+@group(#{GROUP}) @binding(1) var<uniform> light_camera: Camera;
+@group(#{GROUP}) @binding(2) var<uniform> light: Light;
+@group(#{GROUP}) @binding(3) var<uniform> sheets: Sheets;
+@group(#{GROUP}) @binding(4) var<uniform> lighting: SheetLighting;
+@group(#{GROUP}) @binding(5) var<uniform> number: SheetNumber;
+@group(#{GROUP}) @binding(7) var sheet: texture_2d<f32>;
+#ifdef PHONG
+@group(#{GROUP}) @binding(6) var before: texture_2d<f32>;
+@group(#{GROUP}) @binding(8) var behind: texture_2d<f32>;
+#endif
+@group(#{GROUP}) @binding(9) var light_sheet: texture_2d<f32>;
+@group(#{GROUP}) @binding(10) var shadow: texture_2d<f32>;
+@group(#{GROUP}) @binding(11) var transfer: texture_2d<f32>;
+@group(#{GROUP}) @binding(12) var linear_sampler: sampler;
+@group(#{GROUP}) @binding(13) var<storage, read_write> sum: array<vec4<f32>>;
+@group(#{GROUP}) @binding(14) var picture: texture_storage_2d<rgba16float, write>;
+
+/// Metres along a ray to a height.
+fn place_at_height(ray: Ray, height: f32) -> f32 {
+    let climb = dot(sheets.normal, ray.direction);
+    let steep = select(min(climb, -LEAST_COSINE), max(climb, LEAST_COSINE), climb >= 0.0);
+    return (height - dot(sheets.normal, ray.origin)) / steep;
+}
+
+/// What arrives of the light at a point of the world in this sheet: irradiance, linear RGB.
+fn arriving(point: vec3<f32>) -> vec3<f32> {
+    let place = texels_from_clip(light_camera.clip_from_world * vec4<f32>(point, 1.0), vec2<f32>(1.0)).xy;
+    let value = sheet_mean(textureSampleLevel(light_sheet, linear_sampler, place, 0.0));
+    let extinction = lighting.extinction * classified(transfer, linear_sampler, value).a;
+    let metres = metres_in_sheet(sheets, direction_to_light(light, point));
+    let arrived = textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb * mean_transmittance(extinction * metres);
+    return arrived * light_falloff(light, point);
+}
+
+#ifdef PHONG
+/// The point at which the ray through a pixel's middle meets a height.
+fn point_of_pixel(pixel: vec2<u32>, height: f32) -> vec3<f32> {
+    let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
+    return ray.origin + ray.direction * place_at_height(ray, height);
+}
+
+/// Gradient of the means around a pixel of this sheet, by central differences over pixels and sheets.
+fn sheet_gradient(pixel: vec2<u32>, middle: f32) -> vec3<f32> {
+    let last = textureDimensions(sheet) - vec2<u32>(1u);
+    let low = max(pixel, vec2<u32>(1u)) - vec2<u32>(1u);
+    let high = min(pixel + vec2<u32>(1u), last);
+    let changes = vec3<f32>(
+        sheet_mean(textureLoad(sheet, vec2<u32>(high.x, pixel.y), 0)) - sheet_mean(textureLoad(sheet, vec2<u32>(low.x, pixel.y), 0)),
+        sheet_mean(textureLoad(sheet, vec2<u32>(pixel.x, high.y), 0)) - sheet_mean(textureLoad(sheet, vec2<u32>(pixel.x, low.y), 0)),
+        sheet_mean(textureLoad(behind, pixel, 0)) - sheet_mean(textureLoad(before, pixel, 0))
+    );
+    let across = point_of_pixel(vec2<u32>(high.x, pixel.y), middle) - point_of_pixel(vec2<u32>(low.x, pixel.y), middle);
+    let down = point_of_pixel(vec2<u32>(pixel.x, high.y), middle) - point_of_pixel(vec2<u32>(pixel.x, low.y), middle);
+    let through = point_of_pixel(pixel, middle + sheets.thickness) - point_of_pixel(pixel, middle - sheets.thickness);
+    return gradient_of_changes(across, down, through, changes);
+}
+#endif
+
+@compute @workgroup_size(16, 8)
+fn composite_sheet(@builtin(global_invocation_id) id: vec3<u32>) {
+    let pixel = id.xy;
+    let size = textureDimensions(sheet);
+    if any(pixel >= size) {
+        return;
+    }
+    let place = min(pixel.y * size.x + pixel.x, arrayLength(&sum) - 1u);
+    let before_it = sum[place];
+    let own = classified(transfer, linear_sampler, sheet_mean(textureLoad(sheet, pixel, 0)));
+    let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
+    let heights = sheet_heights(sheets, number.index);
+    let middle = 0.5 * (heights.x + heights.y);
+    let point = ray.origin + ray.direction * max(place_at_height(ray, middle), 0.0);
+    let optical_depth = min(lighting.extinction * own.a * metres_in_sheet(sheets, ray.direction), 80.0);
+    let transmittance = exp(-optical_depth);
+    let to_light = direction_to_light(light, point);
+    let irradiance = arriving(point);
+#ifdef PHONG
+    let gradient = sheet_gradient(pixel, middle);
+    let steepness = length(gradient);
+    let normal = select(vec3<f32>(0.0), -gradient / max(steepness, 1e-20), steepness > 1e-6);
+    let radiance = phong_radiance(
+        lighting, own.rgb, 1.0 - transmittance, normal, to_light, -ray.direction, irradiance
+    );
+#else
+    let cosine = dot(to_light, ray.direction);
+    let radiance = scattered_radiance(lighting, own.rgb, 1.0 - transmittance, irradiance, cosine);
+#endif
+    let through = select(transmittance, exp(-before_it.w), sheets.front_to_back == 1u);
+    let nearer = select(radiance, before_it.rgb, sheets.front_to_back == 1u);
+    let farther = select(before_it.rgb, radiance, sheets.front_to_back == 1u);
+    sum[place] = vec4<f32>(nearer + through * farther, before_it.w + optical_depth);
+}
+
+@compute @workgroup_size(16, 8)
+fn show_sheets(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(picture);
+    if any(id.xy >= size) {
+        return;
+    }
+    let all = sum[min(id.y * size.x + id.x, arrayLength(&sum) - 1u)];
+    textureStore(picture, id.xy, vec4<f32>(min(all.rgb, vec3<f32>(65504.0)), exp(-all.w)));
+}

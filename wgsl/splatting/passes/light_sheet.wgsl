@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: The light before the first sheet, and what each sheet leaves of it.
+// source: Zhang and Crawfis, 4.1 steps 6 and 21, Eq. 5 without scattering.
+// note: Dispatch begin_light over the shadow buffer, then light_sheet_left for each sheet, indirectly, after its picture; a sheet
+// note: without splats runs nothing. What is left adds up in 32 bits, whatever blending rounds; the texture is for filtered reads.
+// binding light_camera: the light as a camera.
+// binding light: the light.
+// binding sheets: the sheets.
+// binding lighting: extinction.
+// binding light_sheet: mean values of the sheet along the light rays, rgba16float.
+// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding linear_sampler: linear, clamped to the edge.
+// binding left: what is left of the light, linear RGB, a vector a texel of the shadow buffer, row after row.
+// binding shadow: out, the same.
+
+#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
+#import airlight::core::light::Light
+#import airlight::splatting::sheets::{Sheets, metres_in_sheet, sheet_mean}
+#import airlight::splatting::sheet_shading::{SheetLighting, classified}
+
+@group(#{GROUP}) @binding(0) var<uniform> light_camera: Camera;
+@group(#{GROUP}) @binding(1) var<uniform> light: Light;
+@group(#{GROUP}) @binding(2) var<uniform> sheets: Sheets;
+@group(#{GROUP}) @binding(3) var<uniform> lighting: SheetLighting;
+@group(#{GROUP}) @binding(4) var light_sheet: texture_2d<f32>;
+@group(#{GROUP}) @binding(5) var transfer: texture_2d<f32>;
+@group(#{GROUP}) @binding(6) var linear_sampler: sampler;
+@group(#{GROUP}) @binding(7) var<storage, read_write> left: array<vec4<f32>>;
+@group(#{GROUP}) @binding(8) var shadow: texture_storage_2d<rgba16float, write>;
+
+/// Keeps what is left of the light at a texel.
+fn keep(texel: vec2<u32>, light_left: vec4<f32>) {
+    let place = texel.y * textureDimensions(shadow).x + texel.x;
+    if place < arrayLength(&left) {
+        left[place] = light_left;
+    }
+    textureStore(shadow, texel, min(light_left, vec4<f32>(65504.0)));
+}
+
+@compute @workgroup_size(16, 8)
+fn begin_light(@builtin(global_invocation_id) id: vec3<u32>) {
+    if all(id.xy < textureDimensions(shadow)) {
+        keep(id.xy, vec4<f32>(max(light.radiance, vec3<f32>(0.0)), 1.0));
+    }
+}
+
+@compute @workgroup_size(16, 8)
+fn light_sheet_left(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(shadow);
+    if any(id.xy >= size) {
+        return;
+    }
+    let value = sheet_mean(textureLoad(light_sheet, id.xy, 0));
+    let ray = view_ray(light_camera, ndc_from_pixel(light_camera, vec2<f32>(id.xy) + 0.5));
+    let extinction = lighting.extinction * classified(transfer, linear_sampler, value).a;
+    let through = exp(-min(extinction * metres_in_sheet(sheets, ray.direction), 80.0));
+    keep(id.xy, through * left[min(id.y * size.x + id.x, arrayLength(&left) - 1u)]);
+}
