@@ -18,7 +18,9 @@ use gpu::{Probe, Random, gpu, shaders};
 use probing::{f, hold, worst};
 
 /// Every function of the core modules, each with a test here or in one of `core_*.rs`.
-const COVERED: [(&str, &[&str]); 18] = [
+const COVERED: [(&str, &[&str]); 19] = [
+    // In tests/tests/painterly.rs, by what rays find and see.
+    ("transfer_function", &["classified"]),
     // In tests/tests/core_cosine.rs.
     (
         "cosine_basis",

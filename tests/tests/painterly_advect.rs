@@ -12,10 +12,11 @@ mod probing;
 mod surfaces;
 
 use airlight::Texture;
+use airlight::core::Transfer;
 use airlight::data::torus_field;
 use airlight::painterly::{
     Advect, CurvatureTable, IsoForm, IsoRaycast, PainterlyError, RidgeParameters, Ridges, Shade,
-    StreakParameters, Transfer,
+    StreakParameters,
 };
 use airlight_tests::reference::noise::hash;
 use bending::CURVED;

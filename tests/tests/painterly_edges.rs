@@ -10,11 +10,9 @@ mod probing;
 #[path = "support/surfaces.rs"]
 mod surfaces;
 
-use airlight::core::{DepthRange, Jitter, PerspectiveView, View};
+use airlight::core::{DepthRange, Jitter, PerspectiveView, Transfer, TransferError, View};
 use airlight::data::{Volume, sphere_field, torus_field};
-use airlight::painterly::{
-    IsoForm, IsoRaycast, IsoSettings, IsoVolume, PainterlyError, SurfaceLighting, Transfer,
-};
+use airlight::painterly::{IsoForm, IsoRaycast, IsoSettings, IsoVolume, PainterlyError, SurfaceLighting};
 use airlight_tests::error::max_absolute;
 use airlight_tests::linear;
 use glam::{Mat4, Vec3, Vec4};
@@ -389,6 +387,7 @@ fn occlusion_is_told_by_distances() {
 fn impossible_surfaces_are_errors() {
     let _turn = gpu::turn();
     use PainterlyError as E;
+    use TransferError as T;
     for (settings, name) in [
         (IsoSettings { iso_value: 0.0, ..IsoSettings::default() }, "iso-value"),
         (IsoSettings { iso_value: f32::NAN, ..IsoSettings::default() }, "iso-value"),
@@ -405,10 +404,10 @@ fn impossible_surfaces_are_errors() {
     let dark = SurfaceLighting { ambient: Vec3::splat(-0.1), ..SurfaceLighting::towards(Vec3::Y).unwrap() };
     assert!(dark.check().unwrap_err().to_string().starts_with("ambient"));
     let transfer = |table: &[[f32; 4]]| Transfer::new(gpu(), table).err().unwrap();
-    assert!(matches!(transfer(&[[0.0; 4]]), E::Entries { given: 1, .. }));
-    assert!(matches!(transfer(&vec![[0.0; 4]; 10000]), E::Entries { .. }));
-    assert!(matches!(transfer(&[[0.0; 4], [0.0, 0.0, 0.0, 1.5]]), E::Entry { entry: 1, .. }));
-    assert!(matches!(transfer(&[[f32::NAN, 0.0, 0.0, 0.0], [0.0; 4]]), E::Entry { entry: 0, .. }));
+    assert!(matches!(transfer(&[[0.0; 4]]), T::Entries { given: 1, .. }));
+    assert!(matches!(transfer(&vec![[0.0; 4]; 10000]), T::Entries { .. }));
+    assert!(matches!(transfer(&[[0.0; 4], [0.0, 0.0, 0.0, 1.5]]), T::Entry { entry: 1, .. }));
+    assert!(matches!(transfer(&[[f32::NAN, 0.0, 0.0, 0.0], [0.0; 4]]), T::Entry { entry: 0, .. }));
     let volume = sphere_field([4; 3], 0.5);
     let refused = |range| IsoVolume::new(gpu(), &volume, Some(range)).err().unwrap();
     assert!(matches!(refused([1.0, 1.0]), E::Range(..)) && matches!(refused([0.0, f32::NAN]), E::Range(..)));

@@ -8,9 +8,9 @@
 #[path = "support/gpu.rs"]
 mod gpu;
 
-use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView};
+use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView, Transfer, TransferPoint};
 use airlight::data::Volume;
-use airlight::painterly::{Transfer, TransferPoint};
+
 use airlight::splatting::{SheetFrame, SheetLighting, SheetPicture, SheetSettings, Splats};
 use glam::{Mat4, Vec3};
 use gpu::{gpu, shaders};

@@ -79,12 +79,6 @@ fn value_of_texel(texel: f32, scale: f32, offset: f32) -> f32 {
     return clamp(finite_or(texel, 0.0) * scale + offset, 0.0, 1.0);
 }
 
-/// Colour, linear RGB, and opacity 0..1 of a value 0..1. `transfer`: one row, linear RGB and opacity, filtered.
-fn classified(transfer: texture_2d<f32>, linear_sampler: sampler, value: f32) -> vec4<f32> {
-    let width = f32(textureDimensions(transfer).x);
-    return textureSampleLevel(transfer, linear_sampler, vec2<f32>((value * (width - 1.0) + 0.5) / width, 0.5), 0.0);
-}
-
 /// What is counted of the table's entries for solid values, lower than the iso-value by more than filters round.
 fn solid_threshold(iso_value: f32) -> f32 {
     return iso_value * (1.0 - 1e-5);

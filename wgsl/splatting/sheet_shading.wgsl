@@ -6,6 +6,7 @@
 // note: itself is the mean over its depth, so that a picture of few sheets is neither too bright nor too dark.
 
 #import airlight::core::phase::henyey_greenstein
+#import airlight::core::transfer_function::classified
 
 /// How sheets are lit. 64 bytes.
 struct SheetLighting {
@@ -23,13 +24,9 @@ struct SheetLighting {
     shininess: f32,
 }
 
-/// Linear RGB and opacity 0..1 of a value by a transfer function, one row, linear between its texels.
-fn classified(transfer: texture_2d<f32>, linear_sampler: sampler, value: f32) -> vec4<f32> {
-    let width = f32(textureDimensions(transfer).x);
-    let place = (clamp(value, 0.0, 1.0) * (width - 1.0) + 0.5) / width;
-    return clamp(
-        textureSampleLevel(transfer, linear_sampler, vec2<f32>(place, 0.5), 0.0), vec4<f32>(0.0), vec4<f32>(65504.0)
-    );
+/// Linear RGB and opacity of a sheet's mean value by a transfer function, as `classified` takes it; none of them negative.
+fn sheet_matter(transfer: texture_2d<f32>, linear_sampler: sampler, value: f32) -> vec4<f32> {
+    return clamp(classified(transfer, linear_sampler, value), vec4<f32>(0.0), vec4<f32>(65504.0));
 }
 
 /// Mean of exp(-x) from 0 to the optical depth: the share of light that a sheet has on average.

@@ -198,12 +198,7 @@ impl From<PainterlyError> for CommandError {
             }
             E::Size { .. } => "--size",
             E::Volume(_) | E::Space => return Self::failure(format!("--volume: {error}")),
-            E::File(_)
-            | E::Transfer { .. }
-            | E::Points
-            | E::Entries { .. }
-            | E::Entry { .. }
-            | E::Range(..) => {
+            E::File(_) | E::Transfer { .. } | E::Function(_) | E::Entry { .. } | E::Range(..) => {
                 return Self::failure(format!("--transfer: {error}"));
             }
             E::Setting { .. } | E::Table { .. } | E::NoCurvature | E::Pass(_) => return Self::failure(error),

@@ -12,6 +12,7 @@ mod scan;
 mod shadow_views;
 mod sort;
 mod tonemap;
+mod transfer;
 mod volume;
 
 pub use bricks::{BrickThreshold, Bricks, brick_count};
@@ -25,4 +26,6 @@ pub use scan::Scan;
 pub use shadow_views::{Cascades, MAX_VIEWS, ShadowViews};
 pub use sort::{Sort, SortParameters};
 pub use tonemap::{Tonemap, TonemapParameters};
+pub(crate) use transfer::entry;
+pub use transfer::{Transfer, TransferError, TransferPoint};
 pub use volume::{Reading, VolumeSpace, VolumeTexture, VolumeTextureError};

@@ -2,7 +2,7 @@
 //! What is impossible with iso-surfaces.
 
 use super::MOST_CLIP_PLANES;
-use crate::core::VolumeTextureError;
+use crate::core::{TransferError, VolumeTextureError};
 use crate::gpu::GpuError;
 use crate::pass::PassError;
 
@@ -28,20 +28,8 @@ pub enum PainterlyError {
     /// A range of values that is empty.
     #[error("values from {0} to {1} are no range: the second must be greater, both finite")]
     Range(f32, f32),
-    /// A table of the wrong length.
-    #[error(
-        "a transfer function of {given} entries is impossible: give from 2 to {limit}, the width of a texture"
-    )]
-    Entries {
-        /// How many there are.
-        given: usize,
-        /// The device's limit.
-        limit: u32,
-    },
     /// A colour or opacity.
-    #[error(
-        "entry {entry} of a transfer function is {value:?}: colours must be from 0 to 65504, opacities from 0 to 1"
-    )]
+    #[error("entry {entry} of a table is {value:?}: colours must be from 0 to 65504, opacities from 0 to 1")]
     Entry {
         /// Its number.
         entry: usize,
@@ -63,9 +51,9 @@ pub enum PainterlyError {
     /// Rays that were cast without what is asked for.
     #[error("the rays were cast without curvature: ask for it by `IsoForm::curvature`")]
     NoCurvature,
-    /// Points that are none or not in order.
-    #[error("points of a transfer function must rise in value, from 0 to 1, and be at least one")]
-    Points,
+    /// The transfer function.
+    #[error(transparent)]
+    Function(#[from] TransferError),
     /// A file of a transfer function.
     #[cfg(feature = "command")]
     #[error("the transfer function {0}")]

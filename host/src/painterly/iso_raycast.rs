@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Casts view rays at a surface.
 
-use super::{IsoFrame, IsoSettings, IsoSurface, IsoVolume, PainterlyError, SurfaceLighting, Transfer};
-use crate::core::{Camera, Jitter, VolumeSpace, blue_noise_texture, brick_count};
+use super::{IsoFrame, IsoSettings, IsoSurface, IsoVolume, PainterlyError, SurfaceLighting};
+use crate::core::{Camera, Jitter, Transfer, VolumeSpace, blue_noise_texture, brick_count};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Sampler, Texture};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Painterly rendering of volumes: the host's side of `wgsl/painterly`.
 //!
-//! [`IsoRaycast`] casts view rays at the surface of an [`IsoVolume`] that a [`Transfer`] function classifies, and writes colour,
+//! [`IsoRaycast`] casts view rays at the surface of an [`IsoVolume`] that a [`crate::core::Transfer`] function classifies, and writes colour,
 //! normal, flow and distance of what they hit into [`IsoTargets`], passing over the bricks that [`SolidBricks`] finds empty. [`Shade`] lights colours that were left unlit.
 //! Of the curvatures that may be written too, [`Advect`] makes streaks, and [`Ridges`] colours ridges and valleys.
 //! [`Strokes`] keeps brush strokes on such a surface: they follow it, fade in and out, are born where they
@@ -26,7 +26,6 @@ mod style;
 mod style_file;
 #[cfg(feature = "command")]
 mod toml_file;
-mod transfer;
 #[cfg(feature = "command")]
 mod transfer_file;
 mod volume;
@@ -48,7 +47,6 @@ pub use style::{DensityBounds, LayerStyle, Orientation, PainterlyStyle, Rates};
 pub use style_file::{STYLES, parse_style, read_style};
 #[cfg(feature = "command")]
 pub use toml_file::TomlFileError;
-pub use transfer::{Transfer, TransferPoint};
 #[cfg(feature = "command")]
 pub use transfer_file::{TRANSFERS, TransferFunction, parse_transfer, read_transfer};
 pub use volume::{IsoVolume, value_range};

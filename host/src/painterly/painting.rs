@@ -5,9 +5,9 @@ use super::settings::in_range;
 use super::{
     BrickRanges, Brushes, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoTargets, IsoVolume,
     Orientation, PainterlyError, PainterlyStyle, SolidBricks, StrokeError, StrokeSettings, StrokeStep,
-    StrokeTargets, Strokes, SurfaceLighting, Transfer,
+    StrokeTargets, Strokes, SurfaceLighting,
 };
-use crate::core::{Camera, Jitter};
+use crate::core::{Camera, Jitter, Transfer};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass};
 use crate::resource::{Buffer, Sampler, Texture};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Which bricks of a volume rays may pass over.
 
-use super::{IsoBound, IsoVolume, PainterlyError, Transfer};
-use crate::core::Bricks;
+use super::{IsoBound, IsoVolume, PainterlyError};
+use crate::core::{Bricks, Transfer};
 use crate::gpu::Gpu;
 use crate::pass::Pass;
 use crate::resource::{Buffer, Sampler, Texture};

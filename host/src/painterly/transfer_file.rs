@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Transfer functions of volumes as TOML files.
 
-use super::transfer::entry;
-use super::{PainterlyError, Transfer, TransferPoint, toml_file};
+use super::{PainterlyError, toml_file};
+use crate::core::{Transfer, TransferPoint, entry};
 use crate::data::linear_from_hexadecimal;
 use crate::gpu::Gpu;
 use glam::Vec3;
@@ -31,7 +31,7 @@ impl TransferFunction {
     /// # Errors
     /// As [`Transfer::of_points`].
     pub fn upload(&self, gpu: &Gpu) -> Result<Transfer, PainterlyError> {
-        Transfer::of_points(gpu, &self.points, ENTRIES)
+        Ok(Transfer::of_points(gpu, &self.points, ENTRIES)?)
     }
 
     /// Opacity of a value 0..1 of the range; 0 without points.

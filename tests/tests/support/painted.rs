@@ -3,12 +3,12 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{gpu, shaders};
-use airlight::core::{Camera, DepthRange, Jitter, PerspectiveView};
+use airlight::core::{Camera, DepthRange, Jitter, PerspectiveView, Transfer};
 use airlight::data::Volume;
 use airlight::painterly::{
     BrushImage, Brushes, Canvas, DensityBounds, IsoSettings, IsoVolume, LayerStyle, Orientation,
     PainterlyStyle, Painting, PaintingFrame, PaintingSettings, Rates, StrokeSettings, StrokeState,
-    SurfaceLighting, Transfer,
+    SurfaceLighting,
 };
 use airlight_tests::linear;
 use glam::{Mat4, Vec3};

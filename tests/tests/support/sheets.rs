@@ -3,8 +3,9 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{gpu, shaders};
+use airlight::core::{Transfer, TransferPoint};
 use airlight::data::Volume;
-use airlight::painterly::{Transfer, TransferPoint};
+
 use airlight::splatting::{SheetFrame, SheetPicture, SheetSettings, Splats};
 use glam::{Mat4, Vec3};
 

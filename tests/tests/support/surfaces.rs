@@ -4,11 +4,10 @@
 
 use crate::gpu::{gpu, matrix, shaders, vector};
 use crate::probing::hold;
-use airlight::core::{Camera, DepthRange, Jitter, OrthographicView, PerspectiveView, View};
+use airlight::core::{Camera, DepthRange, Jitter, OrthographicView, PerspectiveView, Transfer, View};
 use airlight::data::{Volume, load_volume};
 use airlight::painterly::{
     BrickRanges, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, Shade, SolidBricks, SurfaceLighting,
-    Transfer,
 };
 use airlight_tests::linear;
 use airlight_tests::reference::camera::Camera as ReferenceCamera;

@@ -27,9 +27,10 @@
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
 #import airlight::core::picture::picture_corner
+#import airlight::core::transfer_function::classified
 #import airlight::core::volume::{VolumeSpace, segment_in_box, march_steps, metres_across}
 #import airlight::painterly::iso_surface::{
-    IsoSurface, Bracket, ClippedRay, MOST_CLIP_PLANES, value_of_texel, classified, narrowed, secant, clip_ray,
+    IsoSurface, Bracket, ClippedRay, MOST_CLIP_PLANES, value_of_texel, narrowed, secant, clip_ray,
     face_normal, world_gradient
 }
 #ifndef DISTANCE_ONLY

@@ -13,8 +13,9 @@
 
 #import airlight::core::bricks::NOTHING_NEAR
 #import airlight::core::volume::VolumeSpace
+#import airlight::core::transfer_function::classified
 #import airlight::painterly::iso_surface::{
-    IsoSurface, value_of_texel, classified, solid_threshold, entries_between
+    IsoSurface, value_of_texel, solid_threshold, entries_between
 }
 
 @group(#{GROUP}) @binding(0) var<uniform> volume: VolumeSpace;

@@ -25,7 +25,7 @@
 #import airlight::core::camera::{Camera, Ray, view_ray, ndc_from_pixel}
 #import airlight::core::light::{Light, direction_to_light, light_falloff, texels_from_clip}
 #import airlight::splatting::sheets::{Sheets, SheetNumber, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
-#import airlight::splatting::sheet_shading::{SheetLighting, classified, mean_transmittance}
+#import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter, mean_transmittance}
 #ifdef PHONG
 #import airlight::splatting::sheet_shading::{gradient_of_changes, phong_radiance}
 #else
@@ -61,7 +61,7 @@ fn place_at_height(ray: Ray, height: f32) -> f32 {
 fn arriving(point: vec3<f32>) -> vec3<f32> {
     let place = texels_from_clip(light_camera.clip_from_world * vec4<f32>(point, 1.0), vec2<f32>(1.0)).xy;
     let value = sheet_mean(textureSampleLevel(light_sheet, linear_sampler, place, 0.0));
-    let extinction = lighting.extinction * classified(transfer, linear_sampler, value).a;
+    let extinction = lighting.extinction * sheet_matter(transfer, linear_sampler, value).a;
     let metres = metres_in_sheet(sheets, direction_to_light(light, point));
     let arrived = textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb * mean_transmittance(extinction * metres);
     return arrived * light_falloff(light, point);
@@ -100,7 +100,7 @@ fn composite_sheet(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let place = min(pixel.y * size.x + pixel.x, arrayLength(&sum) - 1u);
     let before_it = sum[place];
-    let own = classified(transfer, linear_sampler, sheet_mean(textureLoad(sheet, pixel, 0)));
+    let own = sheet_matter(transfer, linear_sampler, sheet_mean(textureLoad(sheet, pixel, 0)));
     let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
     let heights = sheet_heights(sheets, number.index);
     let middle = 0.5 * (heights.x + heights.y);

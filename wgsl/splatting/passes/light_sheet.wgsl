@@ -16,7 +16,7 @@
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
 #import airlight::core::light::Light
 #import airlight::splatting::sheets::{Sheets, metres_in_sheet, sheet_mean}
-#import airlight::splatting::sheet_shading::{SheetLighting, classified}
+#import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter}
 
 @group(#{GROUP}) @binding(0) var<uniform> light_camera: Camera;
 @group(#{GROUP}) @binding(1) var<uniform> light: Light;
@@ -52,7 +52,7 @@ fn light_sheet_left(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let value = sheet_mean(textureLoad(light_sheet, id.xy, 0));
     let ray = view_ray(light_camera, ndc_from_pixel(light_camera, vec2<f32>(id.xy) + 0.5));
-    let extinction = lighting.extinction * classified(transfer, linear_sampler, value).a;
+    let extinction = lighting.extinction * sheet_matter(transfer, linear_sampler, value).a;
     let through = exp(-min(extinction * metres_in_sheet(sheets, ray.direction), 80.0));
     keep(id.xy, through * left[min(id.y * size.x + id.x, arrayLength(&left) - 1u)]);
 }

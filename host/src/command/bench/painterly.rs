@@ -6,11 +6,11 @@ use super::{
     Quality, Row, Work, figure, interleaved, painterly_stroke_costs, painterly_strokes, ratio, time,
 };
 use crate::command::{CommandError, progress, scans};
-use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
+use crate::core::{Camera, DepthRange, Jitter, PerspectiveView, Transfer};
 use crate::data::{Volume, marschner_lobb};
 use crate::painterly::{
     BrickRanges, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, SolidBricks,
-    SurfaceLighting, Transfer,
+    SurfaceLighting,
 };
 use crate::{Gpu, Shaders};
 use airlight_tests::linear;

@@ -5,12 +5,12 @@
 use super::painterly::{SYSTEM, rising};
 use super::{Row, figure};
 use crate::command::{CommandError, scans};
-use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
+use crate::core::{Camera, DepthRange, Jitter, PerspectiveView, Transfer};
 use crate::data::Volume;
 use crate::painterly::{
     Brushes, Canvas, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoTargets, IsoVolume,
     PainterlyStyle, Painting, PaintingFrame, PaintingSettings, STYLES, SolidBricks, Stroke, StrokeSettings,
-    StrokeState, SurfaceLighting, Transfer, parse_style,
+    StrokeState, SurfaceLighting, parse_style,
 };
 use crate::{Gpu, Shaders};
 use airlight_tests::linear;

@@ -5,10 +5,9 @@ use super::flags::Options;
 use super::shrink::shrunk;
 use crate::command::CommandError;
 use crate::command::error::medium_error;
+use crate::core::TransferPoint;
 use crate::data::{Bounds, Volume, load_volume};
-use crate::painterly::{
-    TRANSFERS, TransferFunction, TransferPoint, parse_transfer, read_transfer, value_range,
-};
+use crate::painterly::{TRANSFERS, TransferFunction, parse_transfer, read_transfer, value_range};
 use glam::{Mat4, Vec3};
 
 /// Metres of the longest side of a .npy volume.

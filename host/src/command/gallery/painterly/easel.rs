@@ -5,12 +5,12 @@ use super::super::studio::Studio;
 use super::Motif;
 use crate::Texture;
 use crate::command::CommandError;
-use crate::core::{Camera, DepthRange, Jitter, PerspectiveView};
+use crate::core::{Camera, DepthRange, Jitter, PerspectiveView, Transfer};
 use crate::data::Volume;
 use crate::painterly::{
     Brushes, Canvas, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, PainterlyStyle,
     Painting, PaintingFrame, PaintingSettings, STYLES, Stroke, StrokeSettings, SurfaceLighting, TRANSFERS,
-    Transfer, parse_style, parse_transfer,
+    parse_style, parse_transfer,
 };
 use glam::Vec3;
 
