@@ -38,7 +38,7 @@ impl Kernel {
 impl Default for Kernel {
     /// 0.7 voxels that end at 2.25: a constant volume ripples by 0.2 %.
     fn default() -> Self {
-        let (s, r) = (0.7_f64, 2.25_f64);
+        let [s, r] = [0.7_f32, 2.25].map(f64::from);
         let edge = (-0.5 * (r / s).powi(2)).exp();
         Self { sigma: 0.7, radius: 2.25, scale: held(s, r, edge).recip() as f32, edge: edge as f32 }
     }

@@ -98,7 +98,8 @@ mod tests {
             let view = Vec3::new(sine, -cosine, 0.0);
             let sheets = Sheets::between(view, light, 64, &[Vec3::ZERO, Vec3::ONE], |_| 0.1).unwrap();
             assert!(sheets.normal.dot(light) > 0.707 && sheets.normal.dot(view).abs() > 0.707, "{angle}");
-            assert_eq!(sheets.front_to_back == 1, angle <= 90, "{angle}");
+            // At the right angle rounding decides.
+            assert!(angle == 90 || (sheets.front_to_back == 1) == (angle < 90), "{angle}");
         }
     }
 
