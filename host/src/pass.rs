@@ -2,8 +2,10 @@
 //! Pipelines and layouts built from reflection; resources bound by name.
 
 mod bind;
+mod target;
 
 pub use bind::{Bound, Resource};
+pub(crate) use target::begin_target;
 
 use crate::gpu::{Gpu, GpuError};
 use crate::resource::{Buffer, Texture};

@@ -6,7 +6,7 @@ use super::stroke_passes::{StrokePasses, TARGET};
 use super::{Brushes, Orientation, PainterlyStyle, Stroke, StrokeCounts, StrokeError, StrokeFrame};
 use crate::core::Camera;
 use crate::gpu::Gpu;
-use crate::pass::{Pass, Resource};
+use crate::pass::{Pass, Resource, begin_target};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use glam::{Mat4, Vec2, Vec3};
@@ -321,16 +321,7 @@ impl Strokes {
         arguments: u64,
     ) {
         let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
-        let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("painterly strokes"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target.view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
+        let mut render = begin_target(encoder, target, load);
         pass.set(&mut render, bound);
         render.draw_indirect(&self.counts.raw, arguments);
     }

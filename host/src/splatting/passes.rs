@@ -3,7 +3,7 @@
 
 use super::{Shading, SplattingError};
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, PassError, RenderStages};
+use crate::pass::{Bound, Pass, PassError, RenderStages, begin_target};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
@@ -71,16 +71,7 @@ pub(super) fn draw<'a>(
     drawn: impl IntoIterator<Item = (&'a Bound, &'a Buffer)>,
 ) {
     let load = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-    let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("splatting"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &target.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        })],
-        ..Default::default()
-    });
+    let mut render = begin_target(encoder, target, load);
     for (bound, draws) in drawn {
         pass.set(&mut render, bound);
         render.draw_indirect(&draws.raw, 16 * u64::from(sheet));

@@ -9,7 +9,7 @@ use crate::command::CommandError;
 use crate::painterly::{
     Brushes, IsoBound, PainterlyStyle, Stroke, StrokeSettings, StrokeStep, StrokeTargets, Strokes,
 };
-use crate::pass::{Bound, Pass, RenderStages};
+use crate::pass::{Bound, Pass, RenderStages, begin_target};
 use crate::{Buffer, Gpu, Shaders, Texture};
 use airlight_tests::error::mean_absolute;
 use glam::Vec2;
@@ -163,7 +163,7 @@ impl Quads {
 
     fn draw(&self, encoder: &mut wgpu::CommandEncoder, target: &Texture) {
         clear(encoder, target);
-        let mut render = begin(encoder, target, wgpu::LoadOp::Load);
+        let mut render = begin_target(encoder, target, wgpu::LoadOp::Load);
         self.pass.set(&mut render, &self.bound);
         render.set_vertex_buffer(0, self.vertices.raw.slice(..));
         render.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
@@ -204,22 +204,5 @@ fn own_variation(hash: u32) -> f32 {
 }
 
 fn clear(encoder: &mut wgpu::CommandEncoder, target: &Texture) {
-    drop(begin(encoder, target, wgpu::LoadOp::Clear(wgpu::Color::WHITE)));
-}
-
-fn begin<'e>(
-    encoder: &'e mut wgpu::CommandEncoder,
-    target: &Texture,
-    load: wgpu::LoadOp<wgpu::Color>,
-) -> wgpu::RenderPass<'e> {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("quads"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &target.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        })],
-        ..Default::default()
-    })
+    drop(begin_target(encoder, target, wgpu::LoadOp::Clear(wgpu::Color::WHITE)));
 }
