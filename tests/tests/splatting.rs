@@ -38,7 +38,9 @@ fn transmitted(volume: &Volume, camera: Camera, light: Light, extinction: f32, c
     let splats = Splats::new(gpu(), shaders(), volume, 0.0, None).unwrap();
     let settings = SheetSettings { count, light_size: [64; 2], ..SheetSettings::default() };
     let size = [camera.viewport.x as u32, camera.viewport.y as u32];
-    let picture = SheetPicture::new(gpu(), shaders(), &splats, &straight(), settings, size).unwrap();
+    let picture =
+        SheetPicture::new(gpu(), shaders(), std::slice::from_ref(&splats), &straight(), settings, size)
+            .unwrap();
     let lighting = SheetLighting::new(2.0 * extinction);
     picture.set(gpu(), &SheetFrame { camera, light, lighting }).unwrap();
     let mut encoder = gpu().encoder();
@@ -49,7 +51,7 @@ fn transmitted(volume: &Volume, camera: Camera, light: Light, extinction: f32, c
         let texels = texture.read(gpu()).unwrap();
         f64::from(texels[((height / 2) * width + width / 2) * 4 + channel])
     };
-    [middle(&picture.picture, 3), middle(&picture.shadow, 0)]
+    [middle(&picture.picture, 3), middle(picture.shadow(), 0)]
 }
 
 #[test]

@@ -170,7 +170,14 @@ fn impossible_settings_are_refused() {
     let splats = splats(&volume);
     let transfer = colored([Vec3::ONE; 2]);
     let new = |settings, size| {
-        airlight::splatting::SheetPicture::new(gpu(), shaders(), &splats, &transfer, settings, size)
+        airlight::splatting::SheetPicture::new(
+            gpu(),
+            shaders(),
+            std::slice::from_ref(&splats),
+            &transfer,
+            settings,
+            size,
+        )
     };
     for (settings, size) in [
         (few(0), [48, 32]),

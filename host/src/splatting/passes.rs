@@ -3,8 +3,7 @@
 
 use super::{Shading, SplattingError};
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, PassError, RenderStages, begin_target};
-use crate::resource::{Buffer, Texture};
+use crate::pass::{Pass, PassError, RenderStages};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use wgpu::TextureFormat;
@@ -23,9 +22,7 @@ pub(super) fn rows_of_groups(groups: u32) -> [u32; 3] {
 }
 
 pub(super) struct Passes {
-    pub(super) order: Pass,
     pub(super) splat: Pass,
-    pub(super) light: Pass,
     pub(super) composite: Pass,
 }
 
@@ -36,44 +33,28 @@ impl Passes {
         shading: Shading,
         scanning: bool,
     ) -> Result<Self, SplattingError> {
-        let shading = if shading == Shading::Phong { "phong" } else { "default" };
-        let stages = |vertex: &'static str, fragment: &'static str, target| RenderStages {
-            vertex,
-            fragment: Some(fragment),
-            vertices: None,
-            target: Some(target),
-            depth: None,
-            samples: 1,
+        let flags = |names: &[(&'static str, bool)]| {
+            let add = |all: Definitions, (name, set): &(&'static str, bool)| {
+                if *set { all.flag(*name) } else { all }
+            };
+            names.iter().fold(Definitions::new(), add)
         };
         let composed = |pass: &str, definitions: &Definitions| {
             shaders.compose_with(pass, definitions).map_err(PassError::from)
         };
-        let flag = |name: &'static str, set: bool| {
-            let none = Definitions::new();
-            if set { none.flag(name) } else { none }
+        let splat = composed("splatting/splat_sheet", &flags(&[("SCANNING", scanning)]))?;
+        let stages = RenderStages {
+            vertex: "vertex_splat",
+            fragment: Some("fragment_splat"),
+            vertices: None,
+            target: Some(MEANS),
+            depth: None,
+            samples: 1,
         };
-        let splat = composed("splatting/splat_sheet", &flag("SCANNING", scanning))?;
+        let composite = flags(&[("PHONG", shading == Shading::Phong)]);
         Ok(Self {
-            order: Pass::compute(gpu, shaders, "splatting/order_splats", "default")?,
-            splat: Pass::additive(gpu, &splat, &stages("vertex_splat", "fragment_splat", MEANS), 1)?,
-            light: Pass::compute(gpu, shaders, "splatting/light_sheet", "default")?,
-            composite: Pass::compute(gpu, shaders, "splatting/composite_sheet", shading)?,
+            splat: Pass::additive(gpu, &splat, &stages, 1)?,
+            composite: Pass::compute_with(gpu, shaders, "splatting/composite_sheet", &composite)?,
         })
-    }
-}
-
-/// Draws into `target`, cleared: what was bound, with arguments of which those of `sheet` count.
-pub(super) fn draw<'a>(
-    encoder: &mut wgpu::CommandEncoder,
-    target: &Texture,
-    pass: &Pass,
-    sheet: u32,
-    drawn: impl IntoIterator<Item = (&'a Bound, &'a Buffer)>,
-) {
-    let load = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-    let mut render = begin_target(encoder, target, load);
-    for (bound, draws) in drawn {
-        pass.set(&mut render, bound);
-        render.draw_indirect(&draws.raw, 16 * u64::from(sheet));
     }
 }

@@ -60,10 +60,11 @@ impl Shot {
 /// A picture of the camera's size.
 pub fn shoot(splats: &Splats, transfer: &Transfer, settings: SheetSettings, frame: &SheetFrame) -> Shot {
     let size = [frame.camera.viewport.x as u32, frame.camera.viewport.y as u32];
-    let picture = SheetPicture::new(gpu(), shaders(), splats, transfer, settings, size).unwrap();
+    let picture =
+        SheetPicture::new(gpu(), shaders(), std::slice::from_ref(splats), transfer, settings, size).unwrap();
     picture.set(gpu(), frame).unwrap();
     let mut encoder = gpu().encoder();
     picture.record(gpu(), &mut encoder).unwrap();
     gpu().submit(encoder).unwrap();
-    Shot { picture: picture.picture.read(gpu()).unwrap(), shadow: picture.shadow.read(gpu()).unwrap() }
+    Shot { picture: picture.picture.read(gpu()).unwrap(), shadow: picture.shadow().read(gpu()).unwrap() }
 }
