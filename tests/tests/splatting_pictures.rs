@@ -12,7 +12,9 @@ mod sheets;
 
 use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView};
 use airlight::data::{Volume, cloud};
-use airlight::splatting::{Shading, SheetFrame, SheetLighting, SheetSettings, Splats, SplattingError};
+use airlight::splatting::{
+    Shading, SheetFrame, SheetInputs, SheetLighting, SheetSettings, Splats, SplattingError,
+};
 use glam::Vec3;
 use gpu::{gpu, shaders};
 use sheets::{colored, metres, shoot, splats};
@@ -169,16 +171,9 @@ fn impossible_settings_are_refused() {
     let (volume, frame) = cloud_frame(60.0);
     let splats = splats(&volume);
     let transfer = colored([Vec3::ONE; 2]);
-    let new = |settings, size| {
-        airlight::splatting::SheetPicture::new(
-            gpu(),
-            shaders(),
-            std::slice::from_ref(&splats),
-            &transfer,
-            settings,
-            size,
-        )
-    };
+    let inputs = SheetInputs { splats: std::slice::from_ref(&splats), transfer: &transfer, surfaces: None };
+    let new =
+        |settings, size| airlight::splatting::SheetPicture::new(gpu(), shaders(), inputs, settings, size);
     for (settings, size) in [
         (few(0), [48, 32]),
         (few(5000), [48, 32]),

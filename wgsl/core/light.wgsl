@@ -93,6 +93,14 @@ fn shadow_point(light: Light, size: vec2<f32>, texels: vec2<f32>, depth: f32) ->
     return point_from_texels(light.world_from_clip, size, texels, depth);
 }
 
+/// Side of a texel of a map with the matrix `clip_from_world` where it holds `point`, metres across the light. `width`: of the map in
+/// texels.
+fn metres_of_texel(clip_from_world: mat4x4<f32>, width: f32, point: vec3<f32>) -> f32 {
+    let growth = max((clip_from_world * vec4<f32>(point, 1.0)).w, 0.0);
+    let across = vec3<f32>(clip_from_world[0].x, clip_from_world[1].x, clip_from_world[2].x);
+    return 2.0 * growth / max(width * length(across), 1e-30);
+}
+
 /// What a light texture (gobo) lets through, linear RGB 0..1, towards `point`, metres in the world. `map`: any float
 /// format that filters, stretched over the whole shadow map; `map_sampler`: linear, clamped to the edge. Outside it a
 /// directional light goes by unhindered and a spot is dark. Non-finite texels are dark.

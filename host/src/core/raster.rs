@@ -307,8 +307,8 @@ impl Raster {
         let background = passes.background.bind_known(gpu, &resources)?;
         let lit = passes.surface.bind_known(gpu, &resources)?;
         let color = match &samples_of_surface {
-            Some(samples) => (&samples.view, Some(&pictures.surface.view)),
-            None => (&pictures.surface.view, None),
+            Some(samples) => (&samples.view, Some(&pictures.surface.view), wgpu::Color::BLACK),
+            None => (&pictures.surface.view, None, wgpu::Color::BLACK),
         };
         let mut render = begin(&mut encoder, Some(color), &pictures.depth.view, camera.far_depth);
         passes.background.set(&mut render, &background);
@@ -333,19 +333,19 @@ pub struct Pictures {
     pub depth: Texture,
 }
 
-/// A render pass that clears its targets, depth to `far_depth`. `color`: the target, and what it is resolved into.
+/// A render pass that clears its targets, depth to `far_depth`. `color`: the target, what it is resolved into, what it is cleared to.
 pub(crate) fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    color: Option<(&wgpu::TextureView, Option<&wgpu::TextureView>)>,
+    color: Option<(&wgpu::TextureView, Option<&wgpu::TextureView>, wgpu::Color)>,
     depth: &wgpu::TextureView,
     far_depth: f32,
 ) -> wgpu::RenderPass<'a> {
-    let color = color.map(|(view, resolve_target)| wgpu::RenderPassColorAttachment {
+    let color = color.map(|(view, resolve_target, clear)| wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
         resolve_target,
         ops: wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            load: wgpu::LoadOp::Clear(clear),
             // Samples are of no use once they are resolved.
             store: if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
         },

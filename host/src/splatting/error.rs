@@ -34,6 +34,9 @@ pub enum SplattingError {
         /// Width and height of the picture.
         picture: [u32; 2],
     },
+    /// Meshes without a triangle.
+    #[error("the meshes have no triangle: leave them out, or give one that has")]
+    NoPolygons,
     /// The light.
     #[error(transparent)]
     Light(#[from] LightError),

@@ -62,31 +62,40 @@ pub(super) trait LightPath {
 /// Light that is only taken away.
 pub(super) struct DirectLight {
     pass: Pass,
-    bound: Bound,
+    /// Of each sheet.
+    bound: Vec<Bound>,
     shadow: Texture,
 }
 
 impl DirectLight {
-    /// `resources`: all that the picture has, by name.
+    /// `resources`: all that the picture has, by name; `numbers`: of the sheets.
     pub(super) fn new(
         gpu: &Gpu,
         shaders: &Shaders,
         resources: &[(&str, Resource<'_>)],
+        numbers: &[Buffer],
         [width, height]: [u32; 2],
     ) -> Result<Self, SplattingError> {
-        let pass = Pass::compute(gpu, shaders, "splatting/light_sheet", "default")?;
+        let polygons = resources.iter().any(|(name, _)| *name == "light_heights");
+        let permutation = if polygons { "polygons" } else { "default" };
+        let pass = Pass::compute(gpu, shaders, "splatting/light_sheet", permutation)?;
         let shadow = Texture::storage(gpu, [width, height], LIGHT);
         let left = Buffer::storage(gpu, 16 * u64::from(width) * u64::from(height));
         let mut all = resources.to_vec();
         all.extend([("left", (&left).into()), ("shadow", (&shadow).into())]);
-        let bound = pass.bind_known(gpu, &all)?;
+        let bind = |number: &Buffer| {
+            let mut all = all.clone();
+            all.push(("number", number.into()));
+            pass.bind_known(gpu, &all)
+        };
+        let bound = numbers.iter().map(bind).collect::<Result<_, _>>()?;
         Ok(Self { pass, bound, shadow })
     }
 }
 
 impl LightPath for DirectLight {
     fn begin(&self, encoder: &mut wgpu::CommandEncoder, _: &LightSheets<'_>) -> Result<(), SplattingError> {
-        Ok(self.pass.dispatch_groups(encoder, &self.bound, "begin_light", tiles(&self.shadow))?)
+        Ok(self.pass.dispatch_groups(encoder, &self.bound[0], "begin_light", tiles(&self.shadow))?)
     }
 
     fn arrive(
@@ -106,7 +115,7 @@ impl LightPath for DirectLight {
         sheet: u32,
     ) -> Result<(), SplattingError> {
         let groups = sheets.order.over_shadow(sheet);
-        Ok(self.pass.dispatch_indirect(encoder, &self.bound, "light_sheet_left", groups)?)
+        Ok(self.pass.dispatch_indirect(encoder, &self.bound[sheet as usize], "light_sheet_left", groups)?)
     }
 
     fn shadow(&self) -> &Texture {

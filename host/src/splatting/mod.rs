@@ -14,10 +14,12 @@ mod passes;
 mod picture;
 mod sheets;
 mod splats;
+mod surfaces;
 
 pub use error::SplattingError;
 pub use frame::{LightTransport, Shading, SheetFrame, SheetLighting, SheetSettings};
 pub use kernel::Kernel;
-pub use picture::SheetPicture;
+pub use picture::{SheetInputs, SheetPicture};
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
 pub use splats::{SplatBatch, SplatVolume, Splats};
+pub use surfaces::Surfaces;

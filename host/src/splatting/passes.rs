@@ -32,6 +32,7 @@ impl Passes {
         shaders: &Shaders,
         shading: Shading,
         scanning: bool,
+        polygons: bool,
     ) -> Result<Self, SplattingError> {
         let flags = |names: &[(&'static str, bool)]| {
             let add = |all: Definitions, (name, set): &(&'static str, bool)| {
@@ -42,7 +43,8 @@ impl Passes {
         let composed = |pass: &str, definitions: &Definitions| {
             shaders.compose_with(pass, definitions).map_err(PassError::from)
         };
-        let splat = composed("splatting/splat_sheet", &flags(&[("SCANNING", scanning)]))?;
+        let splat =
+            composed("splatting/splat_sheet", &flags(&[("SCANNING", scanning), ("POLYGONS", polygons)]))?;
         let stages = RenderStages {
             vertex: "vertex_splat",
             fragment: Some("fragment_splat"),
@@ -51,7 +53,7 @@ impl Passes {
             depth: None,
             samples: 1,
         };
-        let composite = flags(&[("PHONG", shading == Shading::Phong)]);
+        let composite = flags(&[("PHONG", shading == Shading::Phong), ("POLYGONS", polygons)]);
         Ok(Self {
             splat: Pass::additive(gpu, &splat, &stages, 1)?,
             composite: Pass::compute_with(gpu, shaders, "splatting/composite_sheet", &composite)?,

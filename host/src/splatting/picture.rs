@@ -6,6 +6,7 @@ use super::light_path::{DirectLight, LightPath, LightSheets};
 use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
+use super::surfaces::{SurfacePictures, Surfaces};
 use super::{
     LightTransport, SheetFrame, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
 };
@@ -16,11 +17,26 @@ use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
 use encase::ShaderType;
 use glam::Vec3;
+use std::sync::{Mutex, PoisonError};
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+pub struct SheetInputs<'a> {
+    /// Of all volumes of the scene, which act as one.
+    pub splats: &'a [Splats],
+    /// Colour and opacity of their values.
+    pub transfer: &'a Transfer,
+    /// Polygons in, before and behind them.
+    pub surfaces: Option<&'a Surfaces>,
+}
 
 /// Volumes drawn sheet by sheet.
 pub struct SheetPicture<'a> {
-    splats: &'a [Splats],
+    inputs: SheetInputs<'a>,
     settings: SheetSettings,
+    surfaces: Option<SurfacePictures<'a>>,
+    /// Whether the depth of the eye's camera is reversed, and that of the light's.
+    reversed: Mutex<[bool; 2]>,
     passes: Passes,
     uniforms: Uniforms,
     order: Order<'a>,
@@ -59,15 +75,14 @@ impl Uniforms {
 }
 
 impl<'a> SheetPicture<'a> {
-    /// Builds passes and buffers for pictures of `size`. `splats`: of all volumes of the scene, which act as one.
+    /// Builds passes and buffers for pictures of `size`.
     ///
     /// # Errors
     /// [`SplattingError`].
     pub fn new(
         gpu: &Gpu,
         shaders: &Shaders,
-        splats: &'a [Splats],
-        transfer: &Transfer,
+        inputs: SheetInputs<'a>,
         settings: SheetSettings,
         size: [u32; 2],
     ) -> Result<Self, SplattingError> {
@@ -82,15 +97,24 @@ impl<'a> SheetPicture<'a> {
             )?;
         }
         let uniforms = Uniforms::new(gpu, &settings);
-        let passes = Passes::new(gpu, shaders, settings.shading, settings.scanning)?;
+        let polygons = inputs.surfaces.is_some();
+        let passes = Passes::new(gpu, shaders, settings.shading, settings.scanning, polygons)?;
         let picture = Texture::storage(gpu, size, LIGHT);
         let light_means = Texture::target(gpu, settings.light_size, MEANS);
         let sheets = [&uniforms.sheets, &uniforms.kernel];
         let targets = [&picture, &light_means];
-        let order = Order::new(gpu, shaders, splats, sheets, targets, settings.count, settings.scanning)?;
+        let order =
+            Order::new(gpu, shaders, inputs.splats, sheets, targets, settings.count, settings.scanning)?;
         let numbers: Vec<Buffer> = (0..settings.count).map(|index| number(gpu, index)).collect();
-        let eye = Means::new(gpu, &passes.splat, &order, &uniforms.camera, sheets, &numbers, None)?;
-        let light = Means::new(gpu, &passes.splat, &order, &uniforms.light_camera, sheets, &numbers, None)?;
+        let buffers = [&uniforms.camera, &uniforms.light_camera, sheets[0]];
+        let surfaces = inputs.surfaces.map(|surfaces| {
+            SurfacePictures::new(gpu, shaders, surfaces, buffers, [size, settings.light_size], false)
+        });
+        let surfaces = surfaces.transpose()?;
+        let means =
+            |camera, heights| Means::new(gpu, &passes.splat, &order, camera, sheets, &numbers, heights);
+        let eye = means(buffers[0], surfaces.as_ref().map(SurfacePictures::eye_heights))?;
+        let light = means(buffers[1], surfaces.as_ref().map(SurfacePictures::light_heights))?;
         let means = [0; 3].map(|_| Texture::target(gpu, size, MEANS));
         let sum = Buffer::storage(gpu, 16 * u64::from(size[0]) * u64::from(size[1]));
         let sampler = Sampler::linear(gpu);
@@ -101,13 +125,23 @@ impl<'a> SheetPicture<'a> {
             ("sheets", sheets[0].into()),
             ("lighting", (&uniforms.lighting).into()),
             ("light_sheet", (&light_means).into()),
-            ("transfer", (&transfer.texture).into()),
+            ("transfer", (&inputs.transfer.texture).into()),
             ("linear_sampler", (&sampler).into()),
             ("sum", (&sum).into()),
             ("picture", (&picture).into()),
         ];
+        if let Some(surfaces) = &surfaces {
+            all.extend([
+                ("eye_heights", surfaces.eye_heights().into()),
+                ("light_heights", surfaces.light_heights().into()),
+                ("albedo", surfaces.albedo().into()),
+                ("normal", surfaces.normal().into()),
+            ]);
+        }
         let path: Box<dyn LightPath> = match settings.transport {
-            LightTransport::Direct => Box::new(DirectLight::new(gpu, shaders, &all, settings.light_size)?),
+            LightTransport::Direct => {
+                Box::new(DirectLight::new(gpu, shaders, &all, &numbers, settings.light_size)?)
+            }
         };
         all.push(("shadow", path.shadow().into()));
         all.extend(path.resources());
@@ -124,8 +158,10 @@ impl<'a> SheetPicture<'a> {
             composites.push(passes.composite.bind_known(gpu, &resources)?);
         }
         Ok(Self {
-            splats,
+            inputs,
             settings,
+            surfaces,
+            reversed: Mutex::default(),
             passes,
             uniforms,
             order,
@@ -151,19 +187,25 @@ impl<'a> SheetPicture<'a> {
         if camera != [width, height] {
             return Err(SplattingError::Viewport { camera, picture: [width, height] });
         }
-        let points: Vec<Vec3> =
-            self.splats.iter().flat_map(|splats| splats.corners.iter().copied()).collect();
+        let splats = self.inputs.splats;
+        let mut points: Vec<Vec3> = splats.iter().flat_map(|splats| splats.corners.iter().copied()).collect();
+        if points.is_empty() {
+            points.extend(self.inputs.surfaces.iter().flat_map(|surfaces| &surfaces.corners));
+        }
         let middle = points.iter().sum::<Vec3>() / points.len().max(1) as f32;
         let radius = self.settings.kernel.radius;
         let reach = |normal| {
-            let reaches = self.splats.iter().map(|splats| splats.volume.reach_along(normal, radius));
+            let reaches = splats.iter().map(|splats| splats.volume.reach_along(normal, radius));
             reaches.fold(0.0, f32::max)
         };
         let light = frame.light_direction(middle);
         let sheets = Sheets::between(frame.view_direction(), light, self.settings.count, &points, reach)?;
+        let light_camera = frame.light_camera(self.settings.light_size);
+        let reversed = [frame.camera.is_reversed(), light_camera.is_reversed()];
+        *self.reversed.lock().unwrap_or_else(PoisonError::into_inner) = reversed;
         let to = &self.uniforms;
         to.camera.write(gpu, &frame.camera);
-        to.light_camera.write(gpu, &frame.light_camera(self.settings.light_size));
+        to.light_camera.write(gpu, &light_camera);
         to.light.write(gpu, &frame.light);
         to.sheets.write(gpu, &sheets);
         to.lighting.write(gpu, &frame.lighting);
@@ -178,6 +220,9 @@ impl<'a> SheetPicture<'a> {
         let Passes { splat, composite } = &self.passes;
         let order = &self.order;
         order.record(gpu, encoder)?;
+        if let Some(surfaces) = &self.surfaces {
+            surfaces.record(encoder, *self.reversed.lock().unwrap_or_else(PoisonError::into_inner));
+        }
         encoder.clear_buffer(&self.sum.raw, 0, None);
         let light_sheets = LightSheets { pass: splat, order, means: &self.light, target: &self.light_means };
         self.path.begin(encoder, &light_sheets)?;

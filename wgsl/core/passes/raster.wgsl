@@ -15,9 +15,9 @@
 // binding light_texture: linear RGB 0..1 over the whole shadow map of a directional light or a spot, any float format that filters; with LIGHT_TEXTURE only.
 // binding light_sampler: linear, clamped to the edge; with LIGHT_TEXTURE only.
 
-#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, matrix_row, towards_viewer}
+#import airlight::core::camera::{Camera, view_ray, ndc_from_pixel, towards_viewer}
 #import airlight::core::light::{
-    DIRECTIONAL, Light, direction_to_light, light_falloff, light_texture_color, texels_from_clip
+    DIRECTIONAL, Light, direction_to_light, light_falloff, light_texture_color, metres_of_texel, texels_from_clip
 }
 #ifdef SHADOW_ARRAY
 #import airlight::core::shadow_views::{ShadowViews, clip_in_views}
@@ -82,10 +82,9 @@ fn vertex_surface(
 /// Clip position of a surface point, moved off the surface by the footprint of the filter, which hides the staircase of
 /// the map. `clip_from_world`: of the map; `width`: of the map in texels.
 fn shadow_clip(clip_from_world: mat4x4<f32>, width: f32, point: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
-    // The footprint of a light at a point grows with the distance from it, and towards the corners of a wide view.
-    let growth = 1.5 * max(dot(matrix_row(clip_from_world, 3u), vec4<f32>(point, 1.0)), 0.0);
-    let scale = select(growth, 1.0, light.kind == DIRECTIONAL);
-    let texel = 2.0 * scale / (width * length(matrix_row(clip_from_world, 0u).xyz));
+    // Of a light at a point it grows towards the corners of a wide view.
+    let wider = select(1.5, 1.0, light.kind == DIRECTIONAL);
+    let texel = wider * metres_of_texel(clip_from_world, width, point);
     let towards = direction_to_light(light, point);
     return clip_from_world * vec4<f32>(point + normal * (1.5 * texel) + towards * texel, 1.0);
 }

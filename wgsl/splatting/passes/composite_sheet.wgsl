@@ -5,7 +5,10 @@
 // note: What adds up is radiance and optical depth, in 32 bits, whatever blending rounds; all zero before the first sheet.
 // note: A sheet is lit by what light arrives at it: the shadow buffer as the sheets before have left it, and the mean over the
 // note: sheet's own depth.
+// note: With POLYGONS sheets end at surfaces, which are opaque and lie behind all that is seen of the volume: show_sheets lights them, by
+// note: Phong, with what reached them.
 // definition PHONG: the medium reflects like surfaces across its gradient, instead of scattering like droplets.
+// definition POLYGONS: there are surfaces in, before and behind the volume.
 // binding camera: the eye's camera.
 // binding light_camera: the light as a camera.
 // binding light: the light.
@@ -17,6 +20,10 @@
 // binding behind: mean values of the sheet farther from the light, rgba16float; with PHONG only.
 // binding light_sheet: mean values of the sheet along the light rays, rgba16float.
 // binding shadow: what arrives of the light at the sheet, linear RGB, rgba16float.
+// binding eye_heights: of the first surface along each view ray, metres, NO_SURFACE where there is none, r32float; with POLYGONS only.
+// binding light_heights: of the first surface along each light ray, likewise, as large as `shadow`; with POLYGONS only.
+// binding albedo: of the surfaces that the eye sees, linear RGB, rgba16float; with POLYGONS only.
+// binding normal: of the surfaces that the eye sees, unit, to the side that is seen, rgba16float; with POLYGONS only.
 // binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
@@ -24,12 +31,13 @@
 
 #import airlight::core::camera::{Camera, Ray, view_ray, ndc_from_pixel}
 #import airlight::core::light::{Light, direction_to_light, light_falloff, texels_from_clip}
-#import airlight::splatting::sheets::{Sheets, SheetNumber, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
+#import airlight::splatting::sheets::{Sheets, SheetNumber, height_of, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
 #import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter, mean_transmittance}
-#ifdef PHONG
-#import airlight::splatting::sheet_shading::{gradient_of_changes, phong_radiance}
-#else
-#import airlight::splatting::sheet_shading::scattered_radiance
+#import airlight::splatting::sheet_shading::{gradient_of_changes, phong_radiance, scattered_radiance}
+#ifdef POLYGONS
+#import airlight::splatting::surface_shadow::{
+    heights_before_surface, share_of_sheet, mean_before_surface, is_surface, off_surface, light_before_surfaces
+}
 #endif
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -49,6 +57,12 @@
 @group(#{GROUP}) @binding(12) var linear_sampler: sampler;
 @group(#{GROUP}) @binding(13) var<storage, read_write> sum: array<vec4<f32>>;
 @group(#{GROUP}) @binding(14) var picture: texture_storage_2d<rgba16float, write>;
+#ifdef POLYGONS
+@group(#{GROUP}) @binding(15) var eye_heights: texture_2d<f32>;
+@group(#{GROUP}) @binding(16) var light_heights: texture_2d<f32>;
+@group(#{GROUP}) @binding(17) var albedo: texture_2d<f32>;
+@group(#{GROUP}) @binding(18) var normal: texture_2d<f32>;
+#endif
 
 /// Metres along a ray to a height.
 fn place_at_height(ray: Ray, height: f32) -> f32 {
@@ -57,13 +71,27 @@ fn place_at_height(ray: Ray, height: f32) -> f32 {
     return (height - dot(sheets.normal, ray.origin)) / steep;
 }
 
+/// Where light through a point meets the shadow buffer, 0..1.
+fn place_in_light(point: vec3<f32>) -> vec2<f32> {
+    return texels_from_clip(light_camera.clip_from_world * vec4<f32>(point, 1.0), vec2<f32>(1.0)).xy;
+}
+
+/// What is left of the light at a point before this sheet, linear RGB.
+fn light_left(point: vec3<f32>, place: vec2<f32>) -> vec3<f32> {
+#ifdef POLYGONS
+    return light_before_surfaces(shadow, light_heights, place, height_of(sheets, point)).rgb;
+#else
+    return textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb;
+#endif
+}
+
 /// What arrives of the light at a point of the world in this sheet: irradiance, linear RGB.
 fn arriving(point: vec3<f32>) -> vec3<f32> {
-    let place = texels_from_clip(light_camera.clip_from_world * vec4<f32>(point, 1.0), vec2<f32>(1.0)).xy;
+    let place = place_in_light(point);
     let value = sheet_mean(textureSampleLevel(light_sheet, linear_sampler, place, 0.0));
     let extinction = lighting.extinction * sheet_matter(transfer, linear_sampler, value).a;
     let metres = metres_in_sheet(sheets, direction_to_light(light, point));
-    let arrived = textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb * mean_transmittance(extinction * metres);
+    let arrived = light_left(point, place) * mean_transmittance(extinction * metres);
     return arrived * light_falloff(light, point);
 }
 
@@ -100,12 +128,21 @@ fn composite_sheet(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let place = min(pixel.y * size.x + pixel.x, arrayLength(&sum) - 1u);
     let before_it = sum[place];
-    let own = sheet_matter(transfer, linear_sampler, sheet_mean(textureLoad(sheet, pixel, 0)));
+    let mean = sheet_mean(textureLoad(sheet, pixel, 0));
     let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
+#ifdef POLYGONS
+    let climbs = dot(sheets.normal, ray.direction) >= 0.0;
+    let heights = heights_before_surface(sheets, number.index, climbs, textureLoad(eye_heights, pixel, 0).x);
+    let share = share_of_sheet(sheets, heights);
+    let own = sheet_matter(transfer, linear_sampler, mean_before_surface(mean, share));
+#else
     let heights = sheet_heights(sheets, number.index);
+    let share = 1.0;
+    let own = sheet_matter(transfer, linear_sampler, mean);
+#endif
     let middle = 0.5 * (heights.x + heights.y);
     let point = ray.origin + ray.direction * max(place_at_height(ray, middle), 0.0);
-    let optical_depth = min(lighting.extinction * own.a * metres_in_sheet(sheets, ray.direction), 80.0);
+    let optical_depth = min(lighting.extinction * own.a * share * metres_in_sheet(sheets, ray.direction), 80.0);
     let transmittance = exp(-optical_depth);
     let to_light = direction_to_light(light, point);
     let irradiance = arriving(point);
@@ -126,6 +163,22 @@ fn composite_sheet(@builtin(global_invocation_id) id: vec3<u32>) {
     sum[place] = vec4<f32>(nearer + through * farther, before_it.w + optical_depth);
 }
 
+#ifdef POLYGONS
+/// Radiance of the surface that a pixel shows, linear RGB.
+fn surface_radiance(pixel: vec2<u32>, height: f32) -> vec3<f32> {
+    let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
+    let point = ray.origin + ray.direction * max(place_at_height(ray, height), 0.0);
+    let facing = textureLoad(normal, pixel, 0).xyz;
+    let unit = facing * inverseSqrt(max(dot(facing, facing), 1e-12));
+    let to_light = direction_to_light(light, point);
+    let width = f32(textureDimensions(light_heights).x);
+    let off = off_surface(light_camera.clip_from_world, width, point, unit, to_light);
+    let reached = light_before_surfaces(shadow, light_heights, place_in_light(off), height_of(sheets, off)).rgb;
+    let color = clamp(textureLoad(albedo, pixel, 0).rgb, vec3<f32>(0.0), vec3<f32>(1.0));
+    return phong_radiance(lighting, color, 1.0, unit, to_light, -ray.direction, reached * light_falloff(light, point));
+}
+#endif
+
 @compute @workgroup_size(16, 8)
 fn show_sheets(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = textureDimensions(picture);
@@ -133,5 +186,14 @@ fn show_sheets(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let all = sum[min(id.y * size.x + id.x, arrayLength(&sum) - 1u)];
-    textureStore(picture, id.xy, vec4<f32>(min(all.rgb, vec3<f32>(65504.0)), exp(-all.w)));
+    var radiance = all.rgb;
+    var transmittance = exp(-all.w);
+#ifdef POLYGONS
+    let height = textureLoad(eye_heights, id.xy, 0).x;
+    if is_surface(height) {
+        radiance += transmittance * surface_radiance(id.xy, height);
+        transmittance = 0.0;
+    }
+#endif
+    textureStore(picture, id.xy, vec4<f32>(min(radiance, vec3<f32>(65504.0)), transmittance));
 }

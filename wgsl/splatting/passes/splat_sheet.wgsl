@@ -16,11 +16,15 @@
 // binding splats: the splats.
 // binding order: numbers of splats, sorted by the first sheet that they reach; not with SCANNING.
 // binding ranges: of each sheet its stretch of the order; not with SCANNING.
-// binding heights: of the first surface along each ray, along the normal of the sheets, metres; with POLYGONS only, r32float.
+// binding heights: of the first surface along each ray, along the normal of the sheets, metres, NO_SURFACE where there is none, r32float; with
+// binding heights: POLYGONS only.
 
 #import airlight::core::camera::{Camera, ORTHOGRAPHIC, towards_viewer}
 #import airlight::splatting::footprint::{Kernel, footprint_section}
 #import airlight::splatting::sheets::{Sheets, SheetNumber, LEAST_COSINE, sheet_heights, height_of, in_exact_parts}
+#ifdef POLYGONS
+#import airlight::splatting::surface_shadow::heights_before_surface
+#endif
 #import airlight::splatting::splat::{Splat, SplatVolume, voxel_place, linear_part, reach_along, quad_around}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -92,8 +96,9 @@ fn fragment_splat(corner: Corner) -> @location(0) vec4<f32> {
     let beyond = dot(corner.offset, direction) - length(corner.along);
     let eye = select(beyond, -1e30, camera.projection == ORTHOGRAPHIC);
 #ifdef POLYGONS
-    let surface = textureLoad(heights, vec2<u32>(corner.clip.xy), 0).x - corner.section.w;
-    ends = select(max(ends, vec2<f32>(surface)), min(ends, vec2<f32>(surface)), climb >= 0.0);
+    let surface = textureLoad(heights, vec2<u32>(corner.clip.xy), 0).x;
+    let seen = heights_before_surface(sheets, number.index, climb >= 0.0, surface);
+    ends = seen - corner.section.w;
 #endif
     let places = (ends - dot(slope, nearest)) / steep;
     let section = footprint_section(

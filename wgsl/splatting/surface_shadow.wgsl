@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::splatting::surface_shadow
+// summary: Which part of a sheet lies before a surface, and what arrives of the light at a point where surfaces block it.
+// source: Zhang and Crawfis, 4.1, Fig. 6 and 7, Table 1.
+// note: Heights along the sheets' normal take the place of depths: light climbs along every ray, so that of two points on one light ray
+// note: the lower is the nearer. Footprints end at surfaces, so that a texel of the shadow buffer keeps what reached its
+// note: surface. A comparison of heights then is right before, within and behind the volume (regions 1, 2 and 3).
+
+#import airlight::core::light::{texels_from_clip, metres_of_texel}
+#import airlight::splatting::sheets::{Sheets, sheet_heights}
+
+/// Height where a ray meets no surface, metres.
+const NO_SURFACE: f32 = 1e30;
+
+/// Whether there is a surface at a height.
+fn is_surface(height: f32) -> bool {
+    return height < 0.5 * NO_SURFACE;
+}
+
+/// Heights between which a ray that climbs or descends sees a sheet, metres: up to the surface at `surface`, NO_SURFACE where there is none.
+fn heights_before_surface(sheets: Sheets, index: u32, climbs: bool, surface: f32) -> vec2<f32> {
+    let heights = sheet_heights(sheets, index);
+    let cut = select(max(heights, vec2<f32>(surface)), min(heights, vec2<f32>(surface)), climbs);
+    return select(heights, cut, is_surface(surface));
+}
+
+/// Share of a sheet's thickness between two heights, 0..1.
+fn share_of_sheet(sheets: Sheets, heights: vec2<f32>) -> f32 {
+    return clamp((heights.y - heights.x) / sheets.thickness, 0.0, 1.0);
+}
+
+/// The mean over the part of a sheet before a surface, from that over all of it; `share`: of that part.
+fn mean_before_surface(mean: f32, share: f32) -> f32 {
+    return mean / max(share, 1e-3);
+}
+
+/// A surface's point moved off it by what a texel of the shadow buffer may be mistaken, metres. `width`: of the buffer in texels; `normal`: unit,
+/// to the side that is seen; `towards`: unit vector TOWARDS the light.
+fn off_surface(
+    clip_from_world: mat4x4<f32>, width: f32, point: vec3<f32>, normal: vec3<f32>, towards: vec3<f32>
+) -> vec3<f32> {
+    let texel = metres_of_texel(clip_from_world, width, point);
+    return point + normal * (1.5 * texel) + towards * texel;
+}
+
+/// What arrives at a point of `height`, of the light that `reached` the first surface or what lies before it, linear RGB: between the
+/// four nearest texels those count whose surface does not lie before the point. `heights`: r32float, of the first surface along light rays; `place`:
+/// 0..1 over both, of the point; beyond the edge it is that at the edge.
+fn light_before_surfaces(
+    reached: texture_2d<f32>, heights: texture_2d<f32>, place: vec2<f32>, height: f32
+) -> vec4<f32> {
+    let size = textureDimensions(heights);
+    let last = vec2<f32>(size) - 1.0;
+    let texel = clamp(place * vec2<f32>(size) - 0.5, vec2<f32>(0.0), last);
+    let low = floor(texel);
+    let part = texel - low;
+    var sum = vec4<f32>(0.0);
+    for (var tap = 0u; tap < 4u; tap++) {
+        let step = vec2<f32>(f32(tap & 1u), f32(tap >> 1u));
+        let at = vec2<u32>(min(low + step, last));
+        let weights = select(1.0 - part, part, step > vec2<f32>(0.5));
+        let lit = textureLoad(heights, at, 0).x >= height;
+        sum += select(0.0, weights.x * weights.y, lit) * vec4<f32>(textureLoad(reached, at, 0).rgb, 1.0);
+    }
+    return sum;
+}
