@@ -96,6 +96,7 @@ const COVERED: [(&str, &[&str]); 19] = [
             "point_from_texels",
             "shadow_position",
             "shadow_point",
+            "metres_of_texel",
             // Takes a texture: tests/tests/stage.rs holds it by what it does to surfaces.
             "light_texture_color",
         ],

@@ -82,6 +82,38 @@ fn points_go_to_the_shadow_map_and_back() {
 }
 
 #[test]
+fn texels_are_as_wide_as_what_they_hold() {
+    let mut random = Random(41);
+    let (mut inputs, mut expected) = (Vec::new(), Vec::new());
+    for case in 0..500 {
+        let (middle, axis) = (random.direction() * random.between(0.0, 10.0), random.direction());
+        let (half, distance) = (random.between(0.1, 1.3), random.between(0.1, 30.0));
+        let point = middle + axis * distance + random.direction().without(axis) * (0.2 * distance);
+        // Over half the picture at the point's distance, or half the map's side.
+        let (matrix, side) = if case % 2 == 0 {
+            let (target, up, aspect) = (middle + axis, random.direction(), 1.0);
+            let (near, far, reversed) = (0.05, 40.0, false);
+            let view = View { eye: middle, target, up, fov_y: 2.0 * half, aspect, near, far, reversed };
+            (ReferenceCamera::perspective(&view).clip_from_world, distance * half.tan())
+        } else {
+            (gpu::light_matrix(axis, middle, 20.0 * half, 1.0), 20.0 * half)
+        };
+        inputs.extend(gpu::host_matrix(matrix).to_cols_array());
+        inputs.extend(gpu::host_vector(point).to_array());
+        expected.push((2.0 * side / 300.0, 1.0 + (middle.length() + distance) / distance));
+    }
+    let found = Probe {
+        head: &format!("#import airlight::core::light::metres_of_texel\n{MATRIX_AT}"),
+        body: "output(0u, metres_of_texel(matrix_at(0u), 300.0, vec3<f32>(input(16u), input(17u), input(18u))));",
+        inputs: 19,
+        outputs: 1,
+    }
+    .run(&inputs);
+    let error = |(found, (side, scale)): (&f32, &(f64, f64))| (f(*found) / side - 1.0).abs() / scale;
+    hold("metres_of_texel", found.iter().zip(&expected).map(error).fold(0.0, f64::max), 1e-6);
+}
+
+#[test]
 fn points_go_to_the_map_of_a_spot_and_back() {
     let mut random = Random(37);
     let (mut inputs, mut cases) = (Vec::new(), Vec::new());
