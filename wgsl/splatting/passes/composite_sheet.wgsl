@@ -5,7 +5,10 @@
 // note: What adds up is radiance and optical depth, in 32 bits, whatever blending rounds; all zero before the first sheet.
 // note: A sheet is lit by what light arrives at it: the shadow buffer as the sheets before have left it, and the mean over the
 // note: sheet's own depth.
+// note: With BACK, light from behind counts as going the other way, in units of the fall-off of the light.
 // definition PHONG: the medium reflects like surfaces across its gradient, instead of scattering like droplets.
+// definition SCATTERING: the sheet keeps what it scatters on.
+// definition BACK: light comes from behind the sheet as well; with SCATTERING.
 // binding camera: the eye's camera.
 // binding light_camera: the light as a camera.
 // binding light: the light.
@@ -17,6 +20,8 @@
 // binding behind: mean values of the sheet farther from the light, rgba16float; with PHONG only.
 // binding light_sheet: mean values of the sheet along the light rays, rgba16float.
 // binding shadow: what arrives of the light at the sheet, linear RGB, rgba16float.
+// binding scattering: cones of scattered light; with SCATTERING only.
+// binding shadow_back: what arrives from behind the sheet, linear RGB, rgba16float; with BACK only.
 // binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
@@ -25,7 +30,12 @@
 #import airlight::core::camera::{Camera, Ray, view_ray, ndc_from_pixel}
 #import airlight::core::light::{Light, direction_to_light, light_falloff, texels_from_clip}
 #import airlight::splatting::sheets::{Sheets, SheetNumber, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
-#import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter, mean_transmittance}
+#import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter}
+#ifdef SCATTERING
+#import airlight::splatting::light_scattering::{Scattering, cone_shares, sheet_optics, mean_light}
+#else
+#import airlight::splatting::sheet_shading::mean_transmittance
+#endif
 #ifdef PHONG
 #import airlight::splatting::sheet_shading::{gradient_of_changes, phong_radiance}
 #else
@@ -49,6 +59,12 @@
 @group(#{GROUP}) @binding(12) var linear_sampler: sampler;
 @group(#{GROUP}) @binding(13) var<storage, read_write> sum: array<vec4<f32>>;
 @group(#{GROUP}) @binding(14) var picture: texture_storage_2d<rgba16float, write>;
+#ifdef SCATTERING
+@group(#{GROUP}) @binding(20) var<uniform> scattering: Scattering;
+#endif
+#ifdef BACK
+@group(#{GROUP}) @binding(21) var shadow_back: texture_2d<f32>;
+#endif
 
 /// Metres along a ray to a height.
 fn place_at_height(ray: Ray, height: f32) -> f32 {
@@ -57,14 +73,32 @@ fn place_at_height(ray: Ray, height: f32) -> f32 {
     return (height - dot(sheets.normal, ray.origin)) / steep;
 }
 
-/// What arrives of the light at a point of the world in this sheet: irradiance, linear RGB.
-fn arriving(point: vec3<f32>) -> vec3<f32> {
+/// Light on average over the sheet's depth: irradiance, linear RGB.
+struct Arriving {
+    /// From the light.
+    front: vec3<f32>,
+    /// From behind.
+    back: vec3<f32>,
+}
+
+/// What arrives of the light at a point of the world in this sheet.
+fn arriving(point: vec3<f32>) -> Arriving {
     let place = texels_from_clip(light_camera.clip_from_world * vec4<f32>(point, 1.0), vec2<f32>(1.0)).xy;
     let value = sheet_mean(textureSampleLevel(light_sheet, linear_sampler, place, 0.0));
-    let extinction = lighting.extinction * sheet_matter(transfer, linear_sampler, value).a;
-    let metres = metres_in_sheet(sheets, direction_to_light(light, point));
-    let arrived = textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb * mean_transmittance(extinction * metres);
-    return arrived * light_falloff(light, point);
+    let matter = sheet_matter(transfer, linear_sampler, value);
+    let optical_depth = lighting.extinction * matter.a * metres_in_sheet(sheets, direction_to_light(light, point));
+#ifdef SCATTERING
+    let share = mean_light(sheet_optics(optical_depth, matter.rgb, cone_shares(scattering, lighting.g)));
+#else
+    let share = vec3<f32>(mean_transmittance(optical_depth));
+#endif
+    let front = textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb * share * light_falloff(light, point);
+#ifdef BACK
+    let back = textureSampleLevel(shadow_back, linear_sampler, place, 0.0).rgb * share * light_falloff(light, point);
+#else
+    let back = vec3<f32>(0.0);
+#endif
+    return Arriving(front, back);
 }
 
 #ifdef PHONG
@@ -108,17 +142,27 @@ fn composite_sheet(@builtin(global_invocation_id) id: vec3<u32>) {
     let optical_depth = min(lighting.extinction * own.a * metres_in_sheet(sheets, ray.direction), 80.0);
     let transmittance = exp(-optical_depth);
     let to_light = direction_to_light(light, point);
-    let irradiance = arriving(point);
+    let arrived = arriving(point);
 #ifdef PHONG
     let gradient = sheet_gradient(pixel, middle);
     let steepness = length(gradient);
     let normal = select(vec3<f32>(0.0), -gradient / max(steepness, 1e-20), steepness > 1e-6);
-    let radiance = phong_radiance(
-        lighting, own.rgb, 1.0 - transmittance, normal, to_light, -ray.direction, irradiance
+    var radiance = phong_radiance(
+        lighting, own.rgb, 1.0 - transmittance, normal, to_light, -ray.direction, arrived.front
     );
+#ifdef BACK
+    var unlit = lighting;
+    unlit.ambient = vec3<f32>(0.0);
+    radiance += phong_radiance(unlit, own.rgb, 1.0 - transmittance, normal, -to_light, -ray.direction, arrived.back);
+#endif
 #else
     let cosine = dot(to_light, ray.direction);
-    let radiance = scattered_radiance(lighting, own.rgb, 1.0 - transmittance, irradiance, cosine);
+    var radiance = scattered_radiance(lighting, own.rgb, 1.0 - transmittance, arrived.front, cosine);
+#ifdef BACK
+    var unlit = lighting;
+    unlit.ambient = vec3<f32>(0.0);
+    radiance += scattered_radiance(unlit, own.rgb, 1.0 - transmittance, arrived.back, -cosine);
+#endif
 #endif
     let through = select(transmittance, exp(-before_it.w), sheets.front_to_back == 1u);
     let nearer = select(radiance, before_it.rgb, sheets.front_to_back == 1u);
