@@ -13,7 +13,7 @@ use airlight::painterly::{
 };
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::splatting::{
-    Kernel, SheetLighting, SheetNumber, SheetTargets, Sheets, SplatBatch, SplatVolume,
+    AxisKernel, Kernel, Scattering, SheetLighting, SheetNumber, SheetTargets, Sheets, SplatBatch, SplatVolume,
 };
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,

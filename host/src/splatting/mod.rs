@@ -12,12 +12,14 @@ mod means;
 mod order;
 mod passes;
 mod picture;
+mod scattered_light;
 mod sheets;
 mod splats;
 
 pub use error::SplattingError;
-pub use frame::{LightTransport, Shading, SheetFrame, SheetLighting, SheetSettings};
+pub use frame::{LightTransport, ScatteringSettings, Shading, SheetFrame, SheetLighting, SheetSettings};
 pub use kernel::Kernel;
 pub use picture::SheetPicture;
+pub use scattered_light::{AxisKernel, Scattering};
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
 pub use splats::{SplatBatch, SplatVolume, Splats};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The passes of sheets.
 
-use super::{Shading, SplattingError};
+use super::{LightTransport, SheetSettings, Shading, SplattingError};
 use crate::gpu::Gpu;
 use crate::pass::{Pass, PassError, RenderStages};
 use crate::shaders::Shaders;
@@ -30,8 +30,7 @@ impl Passes {
     pub(super) fn new(
         gpu: &Gpu,
         shaders: &Shaders,
-        shading: Shading,
-        scanning: bool,
+        settings: &SheetSettings,
     ) -> Result<Self, SplattingError> {
         let flags = |names: &[(&'static str, bool)]| {
             let add = |all: Definitions, (name, set): &(&'static str, bool)| {
@@ -42,7 +41,7 @@ impl Passes {
         let composed = |pass: &str, definitions: &Definitions| {
             shaders.compose_with(pass, definitions).map_err(PassError::from)
         };
-        let splat = composed("splatting/splat_sheet", &flags(&[("SCANNING", scanning)]))?;
+        let splat = composed("splatting/splat_sheet", &flags(&[("SCANNING", settings.scanning)]))?;
         let stages = RenderStages {
             vertex: "vertex_splat",
             fragment: Some("fragment_splat"),
@@ -51,7 +50,15 @@ impl Passes {
             depth: None,
             samples: 1,
         };
-        let composite = flags(&[("PHONG", shading == Shading::Phong)]);
+        let (scattering, back) = match settings.transport {
+            LightTransport::Direct => (false, false),
+            LightTransport::Scattering(scattering) => (true, scattering.back),
+        };
+        let composite = flags(&[
+            ("PHONG", settings.shading == Shading::Phong),
+            ("SCATTERING", scattering),
+            ("BACK", back),
+        ]);
         Ok(Self {
             splat: Pass::additive(gpu, &splat, &stages, 1)?,
             composite: Pass::compute_with(gpu, shaders, "splatting/composite_sheet", &composite)?,

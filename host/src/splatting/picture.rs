@@ -6,6 +6,7 @@ use super::light_path::{DirectLight, LightPath, LightSheets};
 use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
+use super::scattered_light::ScatteredLight;
 use super::{
     LightTransport, SheetFrame, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
 };
@@ -82,7 +83,7 @@ impl<'a> SheetPicture<'a> {
             )?;
         }
         let uniforms = Uniforms::new(gpu, &settings);
-        let passes = Passes::new(gpu, shaders, settings.shading, settings.scanning)?;
+        let passes = Passes::new(gpu, shaders, &settings)?;
         let picture = Texture::storage(gpu, size, LIGHT);
         let light_means = Texture::target(gpu, settings.light_size, MEANS);
         let sheets = [&uniforms.sheets, &uniforms.kernel];
@@ -108,6 +109,10 @@ impl<'a> SheetPicture<'a> {
         ];
         let path: Box<dyn LightPath> = match settings.transport {
             LightTransport::Direct => Box::new(DirectLight::new(gpu, shaders, &all, settings.light_size)?),
+            LightTransport::Scattering(scattering) => {
+                let size = settings.light_size;
+                Box::new(ScatteredLight::new(gpu, shaders, &all, size, &scattering, &numbers, None)?)
+            }
         };
         all.push(("shadow", path.shadow().into()));
         all.extend(path.resources());
@@ -201,6 +206,11 @@ impl<'a> SheetPicture<'a> {
     /// What is left of the light behind the last sheet, linear RGB; rgba16float.
     pub fn shadow(&self) -> &Texture {
         self.path.shadow()
+    }
+
+    /// What the medium sends back to the light, linear RGB, where it is scattered back; rgba16float.
+    pub fn returned(&self) -> Option<&Texture> {
+        self.path.returned()
     }
 }
 
