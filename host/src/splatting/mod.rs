@@ -20,6 +20,6 @@ pub use error::SplattingError;
 pub use frame::{LightTransport, ScatteringSettings, Shading, SheetFrame, SheetLighting, SheetSettings};
 pub use kernel::Kernel;
 pub use picture::SheetPicture;
-pub use scattered_light::{AxisKernel, Scattering};
+pub use scattered_light::Scattering;
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
 pub use splats::{SplatBatch, SplatVolume, Splats};

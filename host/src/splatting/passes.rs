@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The passes of sheets.
 
-use super::{LightTransport, SheetSettings, Shading, SplattingError};
+use super::{LightTransport, Shading, SheetSettings, SplattingError};
 use crate::gpu::Gpu;
 use crate::pass::{Pass, PassError, RenderStages};
 use crate::shaders::Shaders;

@@ -12,7 +12,6 @@ use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use encase::ShaderType;
-use glam::Vec4;
 
 /// The uniform `Scattering` of `splatting/light_scattering`.
 #[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
@@ -25,13 +24,6 @@ pub struct Scattering {
     pub free_path: f32,
     /// Padding.
     pub reserved_a: f32,
-}
-
-/// `AxisKernel` of `splatting/light_scattering`: four of each sheet.
-#[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
-pub struct AxisKernel {
-    /// Weights at the distances of 0 to 12 texels; then two zeros and the greatest distance that has a weight.
-    pub weights: [Vec4; 4],
 }
 
 impl ScatteringSettings {
@@ -83,6 +75,8 @@ pub(super) struct ScatteredLight {
 
 /// Bytes of a texel of a stored sheet.
 const STORED: u64 = 8;
+/// Bytes of the kernels of a sheet.
+const KERNELS: u64 = 256;
 
 impl ScatteredLight {
     /// `resources`: all that the picture has, by name; `numbers`: of the sheets; `surfaces`: heights of the first surface along each
@@ -111,7 +105,7 @@ impl ScatteredLight {
         let texture = || Texture::storage(gpu, [width, height], LIGHT);
         let scattering = Buffer::uniform(gpu, &settings.uniform());
         let [left, rows] = [16 * texels, row_bytes].map(|bytes| Buffer::storage(gpu, bytes));
-        let kernels = Buffer::storage(gpu, 256 * numbers.len() as u64);
+        let kernels = Buffer::storage(gpu, KERNELS * numbers.len() as u64);
         let (shadow, behind, returned) = (texture(), texture(), texture());
         let held = surfaces.map(|_| texture());
         let stored: Vec<Buffer> = match settings.back {
