@@ -13,7 +13,7 @@ use airlight::painterly::{
 };
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::splatting::{
-    Kernel, SheetLighting, SheetNumber, SheetTargets, Sheets, SplatBatch, SplatVolume,
+    Kernel, Scattering, SheetLighting, SheetNumber, SheetTargets, Sheets, SplatBatch, SplatVolume,
 };
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
@@ -325,6 +325,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: Kernel { sigma: f32, radius: f32, scale: f32, edge: f32 });
     twin!(twins: SplatVolume { world_from_voxel: Mat4, voxel_from_world: Mat4, size: UVec3, threshold: f32 });
     twin!(twins: SplatBatch { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: Scattering { forward_cone: f32, back_cone: f32, free_path: f32, reserved_a: f32 });
     twin!(twins: SheetLighting {
         ambient: Vec3, extinction: f32, g: f32, diffuse: f32, specular: f32, shininess: f32,
     });

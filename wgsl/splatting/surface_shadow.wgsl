@@ -43,11 +43,11 @@ fn off_surface(
     return point + normal * (1.5 * texel) + towards * texel;
 }
 
-/// What arrives at a point of `height`, of the light that `reached` the first surface or what lies before it, linear RGB: between the
-/// four nearest texels those count whose surface does not lie before the point. `heights`: r32float, of the first surface along light rays; `place`:
-/// 0..1 over both, of the point; beyond the edge it is that at the edge.
+/// What arrives at a point, of the light that `reached` the first surface or what lies before it, linear RGB, and the share of it that no
+/// surface blocks: of the four nearest texels those count whose surface does not lie in `range`, which ends at the point's
+/// height. `heights`: r32float, of the first surface along light rays; `place`: of the point, 0..1 over both; beyond the edge it is that at the edge.
 fn light_before_surfaces(
-    reached: texture_2d<f32>, heights: texture_2d<f32>, place: vec2<f32>, height: f32
+    reached: texture_2d<f32>, heights: texture_2d<f32>, place: vec2<f32>, range: vec2<f32>
 ) -> vec4<f32> {
     let size = textureDimensions(heights);
     let last = vec2<f32>(size) - 1.0;
@@ -59,7 +59,8 @@ fn light_before_surfaces(
         let step = vec2<f32>(f32(tap & 1u), f32(tap >> 1u));
         let at = vec2<u32>(min(low + step, last));
         let weights = select(1.0 - part, part, step > vec2<f32>(0.5));
-        let lit = textureLoad(heights, at, 0).x >= height;
+        let surface = textureLoad(heights, at, 0).x;
+        let lit = surface < range.x || surface >= range.y;
         sum += select(0.0, weights.x * weights.y, lit) * vec4<f32>(textureLoad(reached, at, 0).rgb, 1.0);
     }
     return sum;

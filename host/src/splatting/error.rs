@@ -37,6 +37,20 @@ pub enum SplattingError {
     /// Meshes without a triangle.
     #[error("the meshes have no triangle: leave them out, or give one that has")]
     NoPolygons,
+    /// A light buffer in which scattered light finds no room.
+    #[error(
+        "light scattered through {sheets} sheets of {size:?} texels needs a buffer of {bytes} bytes, and the device binds {limit}: take a smaller light buffer"
+    )]
+    LightBuffer {
+        /// Columns and rows of the light buffer.
+        size: [u32; 2],
+        /// How many sheets there are.
+        sheets: usize,
+        /// What one pass needs.
+        bytes: u64,
+        /// What the device binds.
+        limit: u64,
+    },
     /// The light.
     #[error(transparent)]
     Light(#[from] LightError),

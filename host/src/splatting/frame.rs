@@ -60,6 +60,30 @@ pub enum LightTransport {
     /// The medium only takes it away.
     #[default]
     Direct,
+    /// The medium also scatters it on and back.
+    Scattering(ScatteringSettings),
+}
+
+/// How sheets scatter light on, and back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScatteringSettings {
+    /// Half the angle of the cones about the light's direction, and about its reverse, within which scattered light counts as going on,
+    /// and back; 0.5 to 90 degrees, 180 where nothing is scattered back.
+    pub cone: f32,
+    /// For how far scattered light keeps its direction, metres; 0 for the depth of the sheet, as in the paper, where blur depends on
+    /// the number of sheets.
+    pub free_path: f32,
+    /// Light is scattered back as well. Stores each sheet, eight bytes a texel of the light buffer.
+    pub back: bool,
+    /// How often light goes down and up before it is seen, 1 to 16; 1 as in the paper.
+    pub sweeps: u32,
+}
+
+impl Default for ScatteringSettings {
+    /// Forward only, within 60 degrees; with `back`, four sweeps.
+    fn default() -> Self {
+        Self { cone: 60.0, free_path: 0.0, back: false, sweeps: 4 }
+    }
 }
 
 /// How sheets are drawn.

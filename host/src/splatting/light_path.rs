@@ -55,6 +55,11 @@ pub(super) trait LightPath {
     /// What arrives at the sheet that is put into the picture next; behind the last, what is left.
     fn shadow(&self) -> &Texture;
 
+    /// What comes back out of the first sheet, where anything does.
+    fn returned(&self) -> Option<&Texture> {
+        None
+    }
+
     /// What else the picture's pass is to be given.
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)>;
 }

@@ -12,14 +12,16 @@ mod means;
 mod order;
 mod passes;
 mod picture;
+mod scattered_light;
 mod sheets;
 mod splats;
 mod surfaces;
 
 pub use error::SplattingError;
-pub use frame::{LightTransport, Shading, SheetFrame, SheetLighting, SheetSettings};
+pub use frame::{LightTransport, ScatteringSettings, Shading, SheetFrame, SheetLighting, SheetSettings};
 pub use kernel::Kernel;
 pub use picture::{SheetInputs, SheetPicture};
+pub use scattered_light::Scattering;
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
 pub use splats::{SplatBatch, SplatVolume, Splats};
 pub use surfaces::Surfaces;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The passes of sheets.
 
-use super::{Shading, SplattingError};
+use super::{LightTransport, Shading, SheetSettings, SplattingError};
 use crate::gpu::Gpu;
 use crate::pass::{Pass, PassError, RenderStages};
 use crate::shaders::Shaders;
@@ -30,8 +30,7 @@ impl Passes {
     pub(super) fn new(
         gpu: &Gpu,
         shaders: &Shaders,
-        shading: Shading,
-        scanning: bool,
+        settings: &SheetSettings,
         polygons: bool,
     ) -> Result<Self, SplattingError> {
         let flags = |names: &[(&'static str, bool)]| {
@@ -43,8 +42,8 @@ impl Passes {
         let composed = |pass: &str, definitions: &Definitions| {
             shaders.compose_with(pass, definitions).map_err(PassError::from)
         };
-        let splat =
-            composed("splatting/splat_sheet", &flags(&[("SCANNING", scanning), ("POLYGONS", polygons)]))?;
+        let splat = flags(&[("SCANNING", settings.scanning), ("POLYGONS", polygons)]);
+        let splat = composed("splatting/splat_sheet", &splat)?;
         let stages = RenderStages {
             vertex: "vertex_splat",
             fragment: Some("fragment_splat"),
@@ -53,7 +52,17 @@ impl Passes {
             depth: None,
             samples: 1,
         };
-        let composite = flags(&[("PHONG", shading == Shading::Phong), ("POLYGONS", polygons)]);
+        let (scattering, back) = match settings.transport {
+            LightTransport::Direct => (false, false),
+            LightTransport::Scattering(scattering) => (true, scattering.back),
+        };
+        let composite = flags(&[
+            ("PHONG", settings.shading == Shading::Phong),
+            ("SCATTERING", scattering),
+            ("BACK", back),
+            ("POLYGONS", polygons),
+            ("SPREAD", polygons && settings.transport != LightTransport::Direct),
+        ]);
         Ok(Self {
             splat: Pass::additive(gpu, &splat, &stages, 1)?,
             composite: Pass::compute_with(gpu, shaders, "splatting/composite_sheet", &composite)?,

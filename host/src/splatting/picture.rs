@@ -6,6 +6,7 @@ use super::light_path::{DirectLight, LightPath, LightSheets};
 use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
+use super::scattered_light::ScatteredLight;
 use super::surfaces::{SurfacePictures, Surfaces};
 use super::{
     LightTransport, SheetFrame, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
@@ -44,6 +45,8 @@ pub struct SheetPicture<'a> {
     light: Means,
     path: Box<dyn LightPath>,
     sum: Buffer,
+    /// Where light spreads behind surfaces.
+    surface_light: Option<Buffer>,
     means: [Texture; 3],
     light_means: Texture,
     composites: Vec<Bound>,
@@ -98,7 +101,7 @@ impl<'a> SheetPicture<'a> {
         }
         let uniforms = Uniforms::new(gpu, &settings);
         let polygons = inputs.surfaces.is_some();
-        let passes = Passes::new(gpu, shaders, settings.shading, settings.scanning, polygons)?;
+        let passes = Passes::new(gpu, shaders, &settings, polygons)?;
         let picture = Texture::storage(gpu, size, LIGHT);
         let light_means = Texture::target(gpu, settings.light_size, MEANS);
         let sheets = [&uniforms.sheets, &uniforms.kernel];
@@ -117,6 +120,9 @@ impl<'a> SheetPicture<'a> {
         let light = means(buffers[1], surfaces.as_ref().map(SurfacePictures::light_heights))?;
         let means = [0; 3].map(|_| Texture::target(gpu, size, MEANS));
         let sum = Buffer::storage(gpu, 16 * u64::from(size[0]) * u64::from(size[1]));
+        let spread = polygons && settings.transport != LightTransport::Direct;
+        let surface_light =
+            spread.then(|| Buffer::storage(gpu, 16 * u64::from(size[0]) * u64::from(size[1])));
         let sampler = Sampler::linear(gpu);
         let mut all: Vec<(&str, Resource<'_>)> = vec![
             ("camera", (&uniforms.camera).into()),
@@ -138,9 +144,15 @@ impl<'a> SheetPicture<'a> {
                 ("normal", surfaces.normal().into()),
             ]);
         }
+        all.extend(surface_light.as_ref().map(|buffer| ("surface_light", buffer.into())));
         let path: Box<dyn LightPath> = match settings.transport {
             LightTransport::Direct => {
                 Box::new(DirectLight::new(gpu, shaders, &all, &numbers, settings.light_size)?)
+            }
+            LightTransport::Scattering(scattering) => {
+                let (size, heights) =
+                    (settings.light_size, surfaces.as_ref().map(SurfacePictures::light_heights));
+                Box::new(ScatteredLight::new(gpu, shaders, &all, size, &scattering, &numbers, heights)?)
             }
         };
         all.push(("shadow", path.shadow().into()));
@@ -169,6 +181,7 @@ impl<'a> SheetPicture<'a> {
             light,
             path,
             sum,
+            surface_light,
             means,
             light_means,
             composites,
@@ -189,7 +202,8 @@ impl<'a> SheetPicture<'a> {
         }
         let splats = self.inputs.splats;
         let mut points: Vec<Vec3> = splats.iter().flat_map(|splats| splats.corners.iter().copied()).collect();
-        if points.is_empty() {
+        // Light that spreads has to pass surfaces sheet by sheet.
+        if points.is_empty() || self.surface_light.is_some() {
             points.extend(self.inputs.surfaces.iter().flat_map(|surfaces| &surfaces.corners));
         }
         let middle = points.iter().sum::<Vec3>() / points.len().max(1) as f32;
@@ -223,7 +237,9 @@ impl<'a> SheetPicture<'a> {
         if let Some(surfaces) = &self.surfaces {
             surfaces.record(encoder, *self.reversed.lock().unwrap_or_else(PoisonError::into_inner));
         }
-        encoder.clear_buffer(&self.sum.raw, 0, None);
+        for buffer in std::iter::once(&self.sum).chain(&self.surface_light) {
+            encoder.clear_buffer(&buffer.raw, 0, None);
+        }
         let light_sheets = LightSheets { pass: splat, order, means: &self.light, target: &self.light_means };
         self.path.begin(encoder, &light_sheets)?;
         begin_clear(encoder, &self.means[2]);
@@ -234,7 +250,11 @@ impl<'a> SheetPicture<'a> {
         for (index, bound) in (0..self.settings.count).zip(&self.composites) {
             draw(encoder, index + 1);
             self.path.arrive(encoder, &light_sheets, index)?;
-            composite.dispatch_indirect(encoder, bound, "composite_sheet", order.over_picture(index))?;
+            if self.surface_light.is_some() {
+                composite.dispatch_groups(encoder, bound, "composite_sheet", tiles(&self.picture))?;
+            } else {
+                composite.dispatch_indirect(encoder, bound, "composite_sheet", order.over_picture(index))?;
+            }
             self.path.leave(encoder, &light_sheets, index)?;
         }
         if let Some(bound) = self.composites.first() {
@@ -246,6 +266,11 @@ impl<'a> SheetPicture<'a> {
     /// What is left of the light behind the last sheet, linear RGB; rgba16float.
     pub fn shadow(&self) -> &Texture {
         self.path.shadow()
+    }
+
+    /// What the medium sends back to the light, linear RGB, where it is scattered back; rgba16float.
+    pub fn returned(&self) -> Option<&Texture> {
+        self.path.returned()
     }
 }
 

@@ -2,6 +2,7 @@
 //! Volumes as sums of kernels, and rays through them: single scattering by marching, with a second march towards the light
 //! from every sample. No sheets, no footprints.
 
+pub mod adding;
 pub mod polygons;
 
 use super::camera::Camera;

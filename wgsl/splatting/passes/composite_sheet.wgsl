@@ -6,9 +6,14 @@
 // note: A sheet is lit by what light arrives at it: the shadow buffer as the sheets before have left it, and the mean over the
 // note: sheet's own depth.
 // note: With POLYGONS sheets end at surfaces, which are opaque and lie behind all that is seen of the volume: show_sheets lights them, by
-// note: Phong, with what reached them.
+// note: Phong, with what reached them. With SPREAD light gets behind surfaces as well: then sheets have to hold them, and composite_sheet is
+// note: dispatched directly, since surfaces may lie in sheets without splats.
+// note: With BACK, light from behind counts as going the other way, in units of the fall-off of the light.
 // definition PHONG: the medium reflects like surfaces across its gradient, instead of scattering like droplets.
 // definition POLYGONS: there are surfaces in, before and behind the volume.
+// definition SPREAD: light spreads sideways on its way, and `shadow` has none of its own behind surfaces; with POLYGONS.
+// definition SCATTERING: the sheet keeps what it scatters on.
+// definition BACK: light comes from behind the sheet as well; with SCATTERING.
 // binding camera: the eye's camera.
 // binding light_camera: the light as a camera.
 // binding light: the light.
@@ -24,6 +29,11 @@
 // binding light_heights: of the first surface along each light ray, likewise, as large as `shadow`; with POLYGONS only.
 // binding albedo: of the surfaces that the eye sees, linear RGB, rgba16float; with POLYGONS only.
 // binding normal: of the surfaces that the eye sees, unit, to the side that is seen, rgba16float; with POLYGONS only.
+// binding held: what arrived at the first surface along each light ray, linear RGB, rgba16float; with SPREAD only.
+// binding surface_light: radiance of the surface that each pixel shows by light that got behind others, linear RGB, a vector a pixel, row
+// binding surface_light: after row; all zero before the first sheet; with SPREAD only.
+// binding scattering: cones of scattered light; with SCATTERING only.
+// binding shadow_back: what arrives from behind the sheet, linear RGB, rgba16float; with BACK only.
 // binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
@@ -32,12 +42,16 @@
 #import airlight::core::camera::{Camera, Ray, view_ray, ndc_from_pixel}
 #import airlight::core::light::{Light, direction_to_light, light_falloff, texels_from_clip}
 #import airlight::splatting::sheets::{Sheets, SheetNumber, height_of, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
-#import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter, mean_transmittance}
+#import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter}
 #import airlight::splatting::sheet_shading::{gradient_of_changes, phong_radiance, scattered_radiance}
+#ifdef SCATTERING
+#import airlight::splatting::light_scattering::{Scattering, cone_shares, sheet_optics, mean_light}
+#else
+#import airlight::splatting::sheet_shading::mean_transmittance
+#endif
 #ifdef POLYGONS
-#import airlight::splatting::surface_shadow::{
-    heights_before_surface, share_of_sheet, mean_before_surface, is_surface, off_surface, light_before_surfaces
-}
+#import airlight::splatting::surface_shadow::{NO_SURFACE, heights_before_surface, share_of_sheet, mean_before_surface, is_surface}
+#import airlight::splatting::surface_shadow::{off_surface, light_before_surfaces}
 #endif
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -63,12 +77,30 @@
 @group(#{GROUP}) @binding(17) var albedo: texture_2d<f32>;
 @group(#{GROUP}) @binding(18) var normal: texture_2d<f32>;
 #endif
+#ifdef SCATTERING
+@group(#{GROUP}) @binding(20) var<uniform> scattering: Scattering;
+#endif
+#ifdef BACK
+@group(#{GROUP}) @binding(21) var shadow_back: texture_2d<f32>;
+#endif
+#ifdef SPREAD
+@group(#{GROUP}) @binding(22) var held: texture_2d<f32>;
+@group(#{GROUP}) @binding(23) var<storage, read_write> surface_light: array<vec4<f32>>;
+#endif
 
 /// Metres along a ray to a height.
 fn place_at_height(ray: Ray, height: f32) -> f32 {
     let climb = dot(sheets.normal, ray.direction);
     let steep = select(min(climb, -LEAST_COSINE), max(climb, LEAST_COSINE), climb >= 0.0);
     return (height - dot(sheets.normal, ray.origin)) / steep;
+}
+
+/// Light on average over the sheet's depth: irradiance, linear RGB.
+struct Arriving {
+    /// From the light.
+    front: vec3<f32>,
+    /// From behind.
+    back: vec3<f32>,
 }
 
 /// Where light through a point meets the shadow buffer, 0..1.
@@ -79,20 +111,37 @@ fn place_in_light(point: vec3<f32>) -> vec2<f32> {
 /// What is left of the light at a point before this sheet, linear RGB.
 fn light_left(point: vec3<f32>, place: vec2<f32>) -> vec3<f32> {
 #ifdef POLYGONS
-    return light_before_surfaces(shadow, light_heights, place, height_of(sheets, point)).rgb;
+#ifdef SPREAD
+    // Surfaces before this sheet have taken their light out of the buffer.
+    let begin = sheet_heights(sheets, number.index).x;
+#else
+    let begin = -NO_SURFACE;
+#endif
+    return light_before_surfaces(shadow, light_heights, place, vec2<f32>(begin, height_of(sheets, point))).rgb;
 #else
     return textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb;
 #endif
 }
 
-/// What arrives of the light at a point of the world in this sheet: irradiance, linear RGB.
-fn arriving(point: vec3<f32>) -> vec3<f32> {
+/// What arrives of the light at a point of the world in this sheet.
+fn arriving(point: vec3<f32>) -> Arriving {
     let place = place_in_light(point);
     let value = sheet_mean(textureSampleLevel(light_sheet, linear_sampler, place, 0.0));
-    let extinction = lighting.extinction * sheet_matter(transfer, linear_sampler, value).a;
-    let metres = metres_in_sheet(sheets, direction_to_light(light, point));
-    let arrived = light_left(point, place) * mean_transmittance(extinction * metres);
-    return arrived * light_falloff(light, point);
+    let matter = sheet_matter(transfer, linear_sampler, value);
+    let optical_depth = lighting.extinction * matter.a * metres_in_sheet(sheets, direction_to_light(light, point));
+#ifdef SCATTERING
+    let share = mean_light(sheet_optics(optical_depth, matter.rgb, cone_shares(scattering, lighting.g)));
+#else
+    let share = vec3<f32>(mean_transmittance(optical_depth));
+#endif
+    let fall = light_falloff(light, point);
+    let front = light_left(point, place) * share * fall;
+#ifdef BACK
+    let back = textureSampleLevel(shadow_back, linear_sampler, place, 0.0).rgb * share * fall;
+#else
+    let back = vec3<f32>(0.0);
+#endif
+    return Arriving(front, back);
 }
 
 #ifdef PHONG
@@ -116,6 +165,77 @@ fn sheet_gradient(pixel: vec2<u32>, middle: f32) -> vec3<f32> {
     let down = point_of_pixel(vec2<u32>(pixel.x, high.y), middle) - point_of_pixel(vec2<u32>(pixel.x, low.y), middle);
     let through = point_of_pixel(pixel, middle + sheets.thickness) - point_of_pixel(pixel, middle - sheets.thickness);
     return gradient_of_changes(across, down, through, changes);
+}
+#endif
+
+#ifdef POLYGONS
+/// The surface that a pixel shows.
+struct SeenSurface {
+    /// Where it is, metres.
+    point: vec3<f32>,
+    /// Unit, to the side that is seen.
+    normal: vec3<f32>,
+    /// Unit vector TOWARDS the light.
+    to_light: vec3<f32>,
+    /// Unit vector TOWARDS the eye.
+    to_eye: vec3<f32>,
+    /// Linear RGB.
+    color: vec3<f32>,
+    /// Where it is looked up, moved off it, metres.
+    off: vec3<f32>,
+}
+
+/// The surface at `height` that a pixel shows.
+fn seen_surface(pixel: vec2<u32>, height: f32) -> SeenSurface {
+    let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
+    let point = ray.origin + ray.direction * max(place_at_height(ray, height), 0.0);
+    let facing = textureLoad(normal, pixel, 0).xyz;
+    let unit = facing * inverseSqrt(max(dot(facing, facing), 1e-12));
+    let to_light = direction_to_light(light, point);
+    let color = clamp(textureLoad(albedo, pixel, 0).rgb, vec3<f32>(0.0), vec3<f32>(1.0));
+    let off = off_surface(light_camera.clip_from_world, f32(textureDimensions(light_heights).x), point, unit, to_light);
+    return SeenSurface(point, unit, to_light, -ray.direction, color, off);
+}
+
+/// Radiance of a surface by light that arrives from a direction, linear RGB. `lights`: with or without what comes from all around.
+fn reflected(lights: SheetLighting, seen: SeenSurface, towards: vec3<f32>, irradiance: vec3<f32>) -> vec3<f32> {
+    let arrived = irradiance * light_falloff(light, seen.point);
+    return phong_radiance(lights, seen.color, 1.0, seen.normal, towards, seen.to_eye, arrived);
+}
+
+/// Light at a surface of what is `reached` by the light, linear RGB, and the share of it that sees the light.
+fn light_at_surface(reached: texture_2d<f32>, seen: SeenSurface) -> vec4<f32> {
+    let heights = vec2<f32>(-NO_SURFACE, height_of(sheets, seen.off));
+    return light_before_surfaces(reached, light_heights, place_in_light(seen.off), heights);
+}
+
+/// Radiance of the surface that a pixel shows, linear RGB.
+fn surface_radiance(pixel: vec2<u32>, place: u32, height: f32) -> vec3<f32> {
+    let seen = seen_surface(pixel, height);
+#ifdef SPREAD
+    let spread = surface_light[min(place, arrayLength(&surface_light) - 1u)].rgb;
+    return reflected(lighting, seen, seen.to_light, light_at_surface(held, seen).rgb) + spread;
+#else
+    return reflected(lighting, seen, seen.to_light, light_at_surface(shadow, seen).rgb);
+#endif
+}
+#endif
+
+#ifdef SPREAD
+/// Radiance of a surface in this sheet by light that got behind others, or from behind the sheet, linear RGB.
+fn spread_radiance(pixel: vec2<u32>, height: f32) -> vec3<f32> {
+    let seen = seen_surface(pixel, height);
+    var unlit = lighting;
+    unlit.ambient = vec3<f32>(0.0);
+    let place = place_in_light(seen.off);
+    let hidden = 1.0 - light_at_surface(shadow, seen).a;
+    let front = hidden * textureSampleLevel(shadow, linear_sampler, place, 0.0).rgb;
+    var radiance = reflected(unlit, seen, seen.to_light, front);
+#ifdef BACK
+    let back = textureSampleLevel(shadow_back, linear_sampler, place, 0.0).rgb;
+    radiance += reflected(unlit, seen, -seen.to_light, back);
+#endif
+    return radiance;
 }
 #endif
 
@@ -145,39 +265,41 @@ fn composite_sheet(@builtin(global_invocation_id) id: vec3<u32>) {
     let optical_depth = min(lighting.extinction * own.a * share * metres_in_sheet(sheets, ray.direction), 80.0);
     let transmittance = exp(-optical_depth);
     let to_light = direction_to_light(light, point);
-    let irradiance = arriving(point);
+    let arrived = arriving(point);
 #ifdef PHONG
     let gradient = sheet_gradient(pixel, middle);
     let steepness = length(gradient);
     let normal = select(vec3<f32>(0.0), -gradient / max(steepness, 1e-20), steepness > 1e-6);
-    let radiance = phong_radiance(
-        lighting, own.rgb, 1.0 - transmittance, normal, to_light, -ray.direction, irradiance
+    var radiance = phong_radiance(
+        lighting, own.rgb, 1.0 - transmittance, normal, to_light, -ray.direction, arrived.front
     );
+#ifdef BACK
+    var unlit = lighting;
+    unlit.ambient = vec3<f32>(0.0);
+    radiance += phong_radiance(unlit, own.rgb, 1.0 - transmittance, normal, -to_light, -ray.direction, arrived.back);
+#endif
 #else
     let cosine = dot(to_light, ray.direction);
-    let radiance = scattered_radiance(lighting, own.rgb, 1.0 - transmittance, irradiance, cosine);
+    var radiance = scattered_radiance(lighting, own.rgb, 1.0 - transmittance, arrived.front, cosine);
+#ifdef BACK
+    var unlit = lighting;
+    unlit.ambient = vec3<f32>(0.0);
+    radiance += scattered_radiance(unlit, own.rgb, 1.0 - transmittance, arrived.back, -cosine);
+#endif
 #endif
     let through = select(transmittance, exp(-before_it.w), sheets.front_to_back == 1u);
     let nearer = select(radiance, before_it.rgb, sheets.front_to_back == 1u);
     let farther = select(before_it.rgb, radiance, sheets.front_to_back == 1u);
     sum[place] = vec4<f32>(nearer + through * farther, before_it.w + optical_depth);
-}
-
-#ifdef POLYGONS
-/// Radiance of the surface that a pixel shows, linear RGB.
-fn surface_radiance(pixel: vec2<u32>, height: f32) -> vec3<f32> {
-    let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
-    let point = ray.origin + ray.direction * max(place_at_height(ray, height), 0.0);
-    let facing = textureLoad(normal, pixel, 0).xyz;
-    let unit = facing * inverseSqrt(max(dot(facing, facing), 1e-12));
-    let to_light = direction_to_light(light, point);
-    let width = f32(textureDimensions(light_heights).x);
-    let off = off_surface(light_camera.clip_from_world, width, point, unit, to_light);
-    let reached = light_before_surfaces(shadow, light_heights, place_in_light(off), height_of(sheets, off)).rgb;
-    let color = clamp(textureLoad(albedo, pixel, 0).rgb, vec3<f32>(0.0), vec3<f32>(1.0));
-    return phong_radiance(lighting, color, 1.0, unit, to_light, -ray.direction, reached * light_falloff(light, point));
-}
+#ifdef SPREAD
+    let surface = textureLoad(eye_heights, pixel, 0).x;
+    let ends = sheet_heights(sheets, number.index);
+    if surface >= ends.x && surface < ends.y {
+        let kept = min(place, arrayLength(&surface_light) - 1u);
+        surface_light[kept] = vec4<f32>(spread_radiance(pixel, surface), 1.0);
+    }
 #endif
+}
 
 @compute @workgroup_size(16, 8)
 fn show_sheets(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -185,13 +307,14 @@ fn show_sheets(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= size) {
         return;
     }
-    let all = sum[min(id.y * size.x + id.x, arrayLength(&sum) - 1u)];
+    let place = min(id.y * size.x + id.x, arrayLength(&sum) - 1u);
+    let all = sum[place];
     var radiance = all.rgb;
     var transmittance = exp(-all.w);
 #ifdef POLYGONS
     let height = textureLoad(eye_heights, id.xy, 0).x;
     if is_surface(height) {
-        radiance += transmittance * surface_radiance(id.xy, height);
+        radiance += transmittance * surface_radiance(id.xy, place, height);
         transmittance = 0.0;
     }
 #endif
