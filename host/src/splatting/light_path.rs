@@ -57,12 +57,18 @@ pub(super) trait LightPath {
 
     /// What else the picture's pass is to be given.
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)>;
+
+    /// Bytes of its buffers and textures.
+    fn memory(&self) -> u64 {
+        self.shadow().memory()
+    }
 }
 
 /// Light that is only taken away.
 pub(super) struct DirectLight {
     pass: Pass,
     bound: Bound,
+    left: Buffer,
     shadow: Texture,
 }
 
@@ -80,7 +86,7 @@ impl DirectLight {
         let mut all = resources.to_vec();
         all.extend([("left", (&left).into()), ("shadow", (&shadow).into())]);
         let bound = pass.bind_known(gpu, &all)?;
-        Ok(Self { pass, bound, shadow })
+        Ok(Self { pass, bound, left, shadow })
     }
 }
 
@@ -115,5 +121,9 @@ impl LightPath for DirectLight {
 
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)> {
         Vec::new()
+    }
+
+    fn memory(&self) -> u64 {
+        self.left.raw.size() + self.shadow.memory()
     }
 }

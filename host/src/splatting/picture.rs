@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Sheet after sheet into a picture and a shadow buffer.
 
+#[cfg(feature = "command")]
+mod parts;
+
 use super::error::in_range;
 use super::light_path::{DirectLight, LightPath, LightSheets};
 use super::means::Means;
@@ -196,6 +199,13 @@ impl<'a> SheetPicture<'a> {
             composite.dispatch_groups(encoder, bound, "show_sheets", tiles(&self.picture))?;
         }
         Ok(())
+    }
+
+    /// Bytes of its textures and larger buffers, without those of the splats.
+    pub fn memory(&self) -> u64 {
+        let textures = self.means.iter().chain([&self.light_means, &self.picture]);
+        let textures: u64 = textures.map(Texture::memory).sum();
+        textures + self.sum.raw.size() + self.order.memory() + self.path.memory()
     }
 
     /// What is left of the light behind the last sheet, linear RGB; rgba16float.
