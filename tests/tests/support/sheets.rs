@@ -59,9 +59,18 @@ impl Shot {
 
 /// A picture of the camera's size.
 pub fn shoot(splats: &Splats, transfer: &Transfer, settings: SheetSettings, frame: &SheetFrame) -> Shot {
+    shoot_all(std::slice::from_ref(splats), transfer, settings, frame)
+}
+
+/// The same of several volumes.
+pub fn shoot_all(
+    splats: &[Splats],
+    transfer: &Transfer,
+    settings: SheetSettings,
+    frame: &SheetFrame,
+) -> Shot {
     let size = [frame.camera.viewport.x as u32, frame.camera.viewport.y as u32];
-    let picture =
-        SheetPicture::new(gpu(), shaders(), std::slice::from_ref(splats), transfer, settings, size).unwrap();
+    let picture = SheetPicture::new(gpu(), shaders(), splats, transfer, settings, size).unwrap();
     picture.set(gpu(), frame).unwrap();
     let mut encoder = gpu().encoder();
     picture.record(gpu(), &mut encoder).unwrap();
