@@ -22,8 +22,10 @@ const SIZE: [u32; 2] = [48, 32];
 const COUNT: u32 = 128;
 /// So few that they do.
 const FEW: u32 = 12;
-/// Frames of the turn, 2 degrees apart.
+/// Frames of the turn.
 const FRAMES: u32 = 180;
+/// Between them, degrees.
+const STEP: f32 = 360.0 / FRAMES as f32;
 
 fn small_cloud() -> Volume {
     let mut volume = cloud([24, 14, 20], 5);
@@ -115,11 +117,20 @@ fn greatest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |a, b| a.max(b.abs()))
 }
 
-/// The greatest change between neighbours of a closed list, and the greatest change of that change.
-fn changes(means: &[f64]) -> [f64; 2] {
-    let at = |i: usize| means[i % means.len()];
-    let first = greatest((0..means.len()).map(|i| at(i + 1) - at(i)));
-    [first, greatest((0..means.len()).map(|i| at(i + 2) - 2.0 * at(i + 1) + at(i)))]
+/// Changes between neighbours of a closed list.
+fn changes(means: &[f64]) -> Vec<f64> {
+    (0..means.len()).map(|i| means[(i + 1) % means.len()] - means[i]).collect()
+}
+
+/// Mean luminances of a turn.
+fn around(turn: &Turn<'_>) -> Vec<f64> {
+    (0..FRAMES).map(|frame| turn.mean(STEP * frame as f32)).collect()
+}
+
+/// Greatest change from frame to frame, and greatest change of that.
+fn roughness(means: &[f64]) -> [f64; 2] {
+    let first = changes(means);
+    [greatest(first.iter().copied()), greatest(changes(&first).into_iter())]
 }
 
 #[test]
@@ -128,27 +139,36 @@ fn the_eye_turns_and_nothing_pops() {
     let volume = small_cloud();
     let splats = splats(&volume);
     let turn = Turn::new(&volume, &splats, COUNT);
-    let fine: Vec<f64> =
-        (0..2 * FRAMES).map(|frame| turn.mean(360.0 / (2 * FRAMES) as f32 * frame as f32)).collect();
-    let coarse: Vec<f64> = fine.iter().step_by(2).copied().collect();
-    let all = mean(&fine);
-    let [change, bend] = changes(&coarse).map(|change| change / all);
-    let [half_change, half_bend] = changes(&fine).map(|change| change / all);
+    let means = around(&turn);
+    let all = mean(&means);
+    let [change, bend] = roughness(&means).map(|change| change / all);
     println!(
-        "of the mean luminance of the turn, steps of 2 degrees: change {change:.5}, its change {bend:.5}"
+        "greatest change of mean luminance in {STEP} degrees {change:.5} of the mean of the turn, of that change {bend:.5}"
     );
-    println!("steps of 1 degree: change {half_change:.5}, its change {half_bend:.5}");
-    let pops = right_angles().map(|degrees| turn.pop(degrees));
+    // Motion that is smooth changes half as much in half the time; a pop stays whole on one side of the middle.
+    let steps = changes(&means);
+    let mut steepest: Vec<usize> = (0..steps.len()).collect();
+    steepest.sort_by(|a, b| steps[*b].abs().total_cmp(&steps[*a].abs()));
+    let turned_over = right_angles().map(|degrees| (degrees / STEP) as usize);
+    let mut half = 0.0_f64;
+    for frame in steepest.iter().take(6).chain(&turned_over) {
+        let middle = turn.mean(STEP * (*frame as f32 + 0.5));
+        let end = means[(frame + 1) % means.len()];
+        half = half.max((middle - means[*frame]).abs().max((end - middle).abs()) / all);
+    }
+    println!("greatest change in {} degree: {half:.5}", 0.5 * STEP);
+    let pops = right_angles().map(|degrees| turn.pop(degrees).map(f64::abs));
     for (degrees, [pop, pixels]) in right_angles().iter().zip(pops) {
-        println!("where sheets turn over, {degrees:.1}: {:.6} of the mean, pixels {pixels:.5}", pop / all);
+        println!("where sheets turn over, at {degrees:.1} degrees: {:.5}, pixels {pixels:.5}", pop / all);
     }
+    assert!(change < 0.04 && bend < 0.006, "{change} {bend}");
+    assert!(half < 0.6 * change, "{half} of {change}");
+    assert!(pops.iter().all(|[pop, pixels]| *pop < 0.002 * all && *pixels < 0.005), "{pops:?}");
+
+    // The same measures see a pop where there is one.
     let few = Turn::new(&volume, &splats, FEW);
-    let few_means: Vec<f64> =
-        (0..FRAMES).map(|frame| few.mean(360.0 / FRAMES as f32 * frame as f32)).collect();
-    let few_bend = changes(&few_means)[1] / all;
-    let few_pops = right_angles().map(|degrees| few.pop(degrees));
-    println!("{FEW} sheets: change of the change {few_bend:.5}");
-    for (degrees, [pop, pixels]) in right_angles().iter().zip(few_pops) {
-        println!("{FEW} sheets where they turn over, {degrees:.1}: {:.6}, pixels {pixels:.5}", pop / all);
-    }
+    let bend = roughness(&around(&few))[1] / all;
+    let pops = right_angles().map(|degrees| few.pop(degrees).map(f64::abs));
+    println!("{FEW} sheets: change of the change {bend:.5}, where they turn over {pops:.5?}");
+    assert!(bend > 0.012 && pops.iter().all(|[_, pixels]| *pixels > 0.1), "{bend} {pops:?}");
 }

@@ -4,7 +4,7 @@
 use super::splatting_scenes::{ERROR, Scene};
 use super::{Quality, Row, Work, figure, interleaved, median, ratio, time};
 use crate::command::{CommandError, progress};
-use crate::splatting::{LightTransport, SheetPicture, SheetSettings, Splats};
+use crate::splatting::{LightTransport, SheetPicture, SheetSettings};
 use crate::{Gpu, Shaders};
 
 /// Name of the system in its rows.
@@ -38,8 +38,15 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
 
 /// Records all of a picture.
 fn record(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, picture: &SheetPicture<'_>) {
-    // The only errors are of entry points, which the first picture of `drawn` would have met.
+    // The only error is a missing entry point; it would leave the picture empty, which its own error shows.
     let _ = picture.record(gpu, encoder);
+}
+
+/// Draws a picture.
+pub(super) fn run(gpu: &Gpu, picture: &SheetPicture<'_>) -> Result<(), CommandError> {
+    let mut encoder = gpu.encoder();
+    picture.record(gpu, &mut encoder).map_err(CommandError::failure)?;
+    Ok(gpu.submit(encoder)?)
 }
 
 /// Records what is done for each splat: the sort, and the splats of all sheets for the eye and for the light.
@@ -47,22 +54,6 @@ fn record_splats(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, picture: &SheetP
     let _ = picture.record_order(gpu, encoder);
     picture.record_eye_splats(encoder);
     picture.record_light_splats(encoder);
-}
-
-/// A picture that was drawn once.
-pub(super) fn drawn<'s>(
-    gpu: &Gpu,
-    shaders: &Shaders,
-    scene: &Scene,
-    splats: &'s Splats,
-    settings: SheetSettings,
-) -> Result<SheetPicture<'s>, CommandError> {
-    let picture = scene.picture(gpu, shaders, splats, settings)?;
-    let mut encoder = gpu.encoder();
-    picture.record(gpu, &mut encoder).map_err(CommandError::failure)?;
-    gpu.submit(encoder)?;
-    gpu.wait()?;
-    Ok(picture)
 }
 
 /// Time a splat of a cloud of 256^3 voxels over that of 64^3, by the time of what is done for each splat. The whole frame would say
@@ -73,8 +64,10 @@ fn splat_times(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let sides = [256, 64];
     let scenes = [Scene::cloud(sides[0])?, Scene::cloud(sides[1])?];
     let splats = [scenes[0].splats(gpu, shaders)?, scenes[1].splats(gpu, shaders)?];
-    let [large, small] = [0, 1].map(|i| drawn(gpu, shaders, &scenes[i], &splats[i], scenes[i].settings()));
+    let [large, small] = [0, 1].map(|i| scenes[i].picture(gpu, shaders, &splats[i], scenes[i].settings()));
     let (large, small) = (large?, small?);
+    run(gpu, &large)?;
+    run(gpu, &small)?;
     let quality = Quality {
         metric: ERROR,
         error: scenes[0].error(gpu, &large, &scenes[0].exact()?)?,
@@ -103,8 +96,8 @@ fn sorted(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     scene.sheets = 128;
     let splats = scene.splats(gpu, shaders)?;
     let settings = scene.settings();
-    let sorted = drawn(gpu, shaders, &scene, &splats, settings)?;
-    let scanning = drawn(gpu, shaders, &scene, &splats, SheetSettings { scanning: true, ..settings })?;
+    let sorted = scene.picture(gpu, shaders, &splats, settings)?;
+    let scanning = scene.picture(gpu, shaders, &splats, SheetSettings { scanning: true, ..settings })?;
     let works: [Work<'_>; 2] =
         [&|encoder| record(gpu, encoder, &scanning), &|encoder| record(gpu, encoder, &sorted)];
     let samples = interleaved(gpu, &works, SAMPLES)?;
@@ -132,8 +125,8 @@ fn sparse(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let sparse = Scene::stent()?;
     let filled = sparse.filled();
     let splats = [sparse.splats(gpu, shaders)?, filled.splats(gpu, shaders)?];
-    let few = drawn(gpu, shaders, &sparse, &splats[0], sparse.settings())?;
-    let all = drawn(gpu, shaders, &filled, &splats[1], sparse.settings())?;
+    let few = sparse.picture(gpu, shaders, &splats[0], sparse.settings())?;
+    let all = filled.picture(gpu, shaders, &splats[1], sparse.settings())?;
     let works: [Work<'_>; 2] = [&|encoder| record(gpu, encoder, &all), &|encoder| record(gpu, encoder, &few)];
     let samples = interleaved(gpu, &works, SAMPLES)?;
     let exact = sparse.exact()?;
@@ -162,8 +155,8 @@ fn overhead(
 ) -> Result<Vec<Row>, CommandError> {
     let scene = Scene::cloud(128)?;
     let splats = scene.splats(gpu, shaders)?;
-    let direct = drawn(gpu, shaders, &scene, &splats, scene.settings())?;
-    let other = drawn(gpu, shaders, &scene, &splats, SheetSettings { transport, ..scene.settings() })?;
+    let direct = scene.picture(gpu, shaders, &splats, scene.settings())?;
+    let other = scene.picture(gpu, shaders, &splats, SheetSettings { transport, ..scene.settings() })?;
     let works: [Work<'_>; 2] =
         [&|encoder| record(gpu, encoder, &other), &|encoder| record(gpu, encoder, &direct)];
     let samples = interleaved(gpu, &works, SAMPLES)?;

@@ -37,7 +37,7 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    /// A cloud in a cube of 2 m of `side`^3 voxels. Resolutions differ in nothing but the size of a voxel: all are made from one
+    /// A cloud in a cube of 2 m of `side`^3 voxels, empty around it. Resolutions differ in nothing but the size of a voxel: all are made from one
     /// field, and a voxel has as many pixels, texels of the shadow buffer, and sheets. At 256^3 they are 512 x 512 and 128.
     pub(super) fn cloud(side: u32) -> Result<Self, CommandError> {
         let volume = resampled(&cloud([COARSE; 3], 5), side).map_err(CommandError::failure)?;
@@ -194,24 +194,31 @@ impl Scene {
 /// Voxels along each side of the field that clouds are made from.
 const COARSE: u32 = 128;
 
-/// A field of [`COARSE`]^3 voxels in a cube of 2 m of `side`^3, values 0 to 1, straight between voxels.
+/// Share of the sides of the cube that the cloud fills.
+const FILLED: f32 = 0.6;
+
+/// A field of [`COARSE`]^3 voxels in the middle of a cube of 2 m of `side`^3, values 0 to 1, straight between voxels.
 fn resampled(coarse: &Volume, side: u32) -> Result<Volume, crate::data::VolumeError> {
     let last = COARSE as usize - 1;
-    // The voxels below and above a place, and the share of the second.
+    // The voxels below and above a place, the share of the second, and whether the place is in the field.
     let between = |i: usize| {
-        let place = (i as f32 + 0.5) * COARSE as f32 / side as f32 - 0.5;
-        let below = place.clamp(0.0, last as f32);
+        let unit = ((i as f32 + 0.5) / side as f32 - 0.5) / FILLED + 0.5;
+        let below = (unit * COARSE as f32 - 0.5).clamp(0.0, last as f32);
         let first = below as usize;
-        (first, (first + 1).min(last), below - first as f32)
+        (first, (first + 1).min(last), below - first as f32, (0.0..=1.0).contains(&unit))
     };
     let side = side as usize;
     let places: Vec<_> = (0..side).map(between).collect();
     let value = |x: usize, y: usize, z: usize| coarse.values[(z * (last + 1) + y) * (last + 1) + x];
     let slices = parallel::rows(side, |z| {
-        let (near, far, depth) = places[z];
+        let (near, far, depth, deep) = places[z];
         let mut values = Vec::with_capacity(side * side);
-        for (low, high, up) in &places {
-            for (left, right, along) in &places {
+        for (low, high, up, high_enough) in &places {
+            for (left, right, along, inside) in &places {
+                if !(deep && *high_enough && *inside) {
+                    values.push(0.0);
+                    continue;
+                }
                 let line = |y: usize, z: usize| {
                     value(*left, y, z) + along * (value(*right, y, z) - value(*left, y, z))
                 };

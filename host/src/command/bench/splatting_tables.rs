@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The long table of the system `splatting`: a cloud from 64^3 to 256^3 voxels.
 
-use super::splatting::{SYSTEM, drawn};
+use super::splatting::{SYSTEM, run};
 use super::splatting_scenes::Scene;
 use super::{Row, Work, figure, interleaved, median, time};
 use crate::command::{CommandError, progress};
@@ -16,8 +16,9 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
         bar.set_message(format!("{side}^3"));
         let scene = Scene::cloud(side)?;
         let splats = scene.splats(gpu, shaders)?;
-        let picture = drawn(gpu, shaders, &scene, &splats, scene.settings())?;
-        // The only errors are of entry points, which `drawn` would have met.
+        let picture = scene.picture(gpu, shaders, &splats, scene.settings())?;
+        // Parts need the order of splats; and the only errors are of entry points, which this meets.
+        run(gpu, &picture)?;
         let works: [Work<'_>; 5] = [
             &|encoder| {
                 let _ = picture.record_order(gpu, encoder);
