@@ -60,7 +60,7 @@ pub struct Row {
     pub name: String,
     /// Its value: the median of the samples.
     pub value: f64,
-    /// `ratio`, `ms`, `MB`, `steps`, `fraction`, or what is counted.
+    /// `ratio`, `ms`, `ns`, `MB`, `steps`, `fraction`, or what is counted.
     pub unit: &'static str,
     /// Which way is better.
     pub better: &'static str,
