@@ -108,6 +108,65 @@ fn a_slab_lets_through_what_beer_and_lambert_say() {
     println!("worst share of what is allowed: {worst:.2?}");
 }
 
+/// Above, eye and light lie alike to the slab, so that sheets are parallel to it. Here they are as they happen to be, and so is the
+/// lattice of the voxels.
+#[test]
+fn a_slab_at_any_tilt_to_the_sheets_lets_through_the_same() {
+    let _turn = gpu::turn();
+    let mut volume = slab([40, 12, 40]);
+    volume.world_from_unit = Mat4::from_rotation_y(0.3) * volume.world_from_unit;
+    let mut worst = [0.0_f64; 2];
+    let mut tilts: f32 = 0.0;
+    // Between the direction of the eye and straight down, and between the directions of eye and light, degrees.
+    for (tilt, angle) in [
+        (15.0_f32, 0.0_f32),
+        (30.0, 30.0),
+        (-10.0, 60.0),
+        (0.0, 60.0),
+        (-35.0, 89.0),
+        (-35.0, 91.0),
+        (0.0, 120.0),
+        (-55.0, 110.0),
+        (0.0, 150.0),
+        (-30.0, 150.0),
+        (25.0, 150.0),
+    ] {
+        let direction = |degrees: f32| {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            Vec3::new(sine, -cosine, 0.0)
+        };
+        let (view, way) = (direction(tilt), direction(tilt + angle));
+        assert!(
+            (view.dot(way).acos().to_degrees() - angle).abs() < 0.1 && view.y.abs().min(way.y.abs()) > 0.49
+        );
+        let halfway = if view.dot(way) >= 0.0 { way + view } else { way - view }.normalize();
+        tilts = tilts.max(halfway.y.abs().acos().to_degrees());
+        for tau in [1.0_f64, 4.0, 7.0] {
+            let [seen_way, lit_way] = [view, way].map(|way| 12.0 / f64::from(way.y.abs()));
+            let light = light_along(way, &volume);
+            let orthographic = OrthographicView {
+                eye: -40.0 * view,
+                target: Vec3::ZERO,
+                height: 8.0,
+                near: 0.0,
+                far: 100.0,
+                depth: DepthRange::Forward,
+            };
+            let camera = Camera::orthographic(&orthographic, [33; 2]).unwrap();
+            let [seen, lit] = transmitted(&volume, camera, light, (tau / seen_way) as f32, 48);
+            for (i, (found, tau)) in [(seen, tau), (lit, tau * lit_way / seen_way)].into_iter().enumerate() {
+                let expected = (-tau).exp();
+                let error = (found - expected).abs();
+                let allowed = if tau <= 4.0 { 0.01 * expected } else { 2e-4 };
+                worst[i] = worst[i].max(error / allowed);
+                assert!(error <= allowed, "{tilt} and {angle} degrees, tau {tau}: {found} for {expected}");
+            }
+        }
+    }
+    println!("sheets tilted by up to {tilts:.0} degrees; worst share of what is allowed: {worst:.2?}");
+    assert!(tilts > 30.0);
+}
+
 #[test]
 fn a_perspective_camera_in_any_volume_sees_the_same() {
     let _turn = gpu::turn();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A small cloud in sheets of splats against an f64 ray marcher with the same optical model, for more and more sheets, and
-//! sheets from front to back against those from back to front.
+//! A small cloud in sheets of splats against an f64 ray marcher with the same optical model, for more and more sheets; with a
+//! transfer function that is no straight line; two clouds as one; and sheets from front to back against those from back to front.
 //!
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]
@@ -10,15 +10,16 @@ mod gpu;
 #[path = "support/sheets.rs"]
 mod sheets;
 
-use airlight::core::{Camera, Light};
+use airlight::core::{Camera, Light, Transfer, TransferPoint};
 use airlight::data::{Volume, cloud};
-use airlight::splatting::{SheetFrame, SheetLighting, SheetSettings};
+use airlight::splatting::{SheetFrame, SheetInputs, SheetLighting, SheetSettings};
 use airlight_tests::linear::{Mat4, Vec3};
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView, View};
 use airlight_tests::reference::light::Light as ReferenceLight;
-use airlight_tests::reference::splatting::{Field, Kernel, Medium, Scene};
-use gpu::{host_camera, host_vector};
-use sheets::{Shot, colored, shoot, splats};
+use airlight_tests::reference::splatting::{Field, Kernel, Medium, Ramp, Scene};
+use glam::Mat4 as HostMat4;
+use gpu::{gpu, host_camera, host_vector};
+use sheets::{Shot, colored, shoot, shoot_all, splats};
 
 const SIZE: [u32; 2] = [64, 40];
 const ALBEDO: [[f64; 3]; 2] = [[0.95, 0.6, 0.3], [0.5, 0.7, 0.9]];
@@ -145,6 +146,141 @@ fn a_cloud_is_what_a_ray_marcher_makes_of_it() {
         });
         assert!(errors[1] <= 0.03 && errors[3] <= 0.005, "{name}: {errors:?}");
         assert!(errors.windows(2).all(|pair| pair[1] < pair[0]), "{name}: {errors:?}");
+    }
+}
+
+/// Clear up to one value and opaque from another on; the colour goes straight from value 0 to value 1.
+fn ramp([clear, opaque]: [f64; 2]) -> Transfer {
+    let [none, full] = ALBEDO.map(|color| glam::Vec3::from(color.map(|x| x as f32)));
+    let point = |value: f64, opacity| {
+        let value = value as f32;
+        TransferPoint { value, color: none.lerp(full, value), opacity }
+    };
+    let points = [point(0.0, 0.0), point(clear, 0.0), point(opaque, 1.0), point(1.0, 1.0)];
+    Transfer::of_points(gpu(), &points, 1025).unwrap()
+}
+
+/// What is classified is the mean of a sheet, not voxels: so a surface comes out where the field has it, and the sharper the
+/// thinner the sheets are.
+#[test]
+fn a_surface_in_a_cloud_is_what_a_ray_marcher_makes_of_it() {
+    let _turn = gpu::turn();
+    let volume = small_cloud();
+    let field = field_of(&volume);
+    let splats = splats(&volume);
+    let values = [0.3, 0.5];
+    for degrees in [40.0, 130.0] {
+        let [view, way] = directions(degrees);
+        let (reference, camera) = camera(view, false);
+        let (reference_light, light) = light(way, false, &volume);
+        let matter = Ramp { matter: &field, values };
+        let scene =
+            Scene { field: &matter, medium: MEDIUM, light: reference_light, radiance: RADIANCE, step: 0.02 };
+        let truth = scene.picture(&reference, SIZE.map(|side| side as usize));
+        let frame = SheetFrame { camera, light, lighting: lighting() };
+        let errors = [32, 64, 128, 256].map(|count| {
+            let settings = SheetSettings { count, light_size: [256; 2], ..SheetSettings::default() };
+            let shot = shoot(&splats, &ramp(values), settings, &frame);
+            let [radiance, transmittance] = differences(&shot, truth.iter());
+            println!(
+                "{degrees} degrees, {count} sheets: radiance {radiance:.5}, transmittance {transmittance:.5}"
+            );
+            radiance
+        });
+        assert!(errors[2] <= 0.03 && errors[3] <= 0.01, "{degrees}: {errors:?}");
+        assert!(errors.windows(2).all(|pair| pair[1] < 0.8 * pair[0]), "{degrees}: {errors:?}");
+    }
+}
+
+/// A volume elsewhere, with `share` of its values.
+fn moved(volume: &Volume, by: glam::Vec3, share: f32) -> Volume {
+    let turn = HostMat4::from_translation(by) * HostMat4::from_rotation_y(0.6);
+    Volume {
+        size: volume.size,
+        values: volume.values.iter().map(|value| value * share).collect(),
+        world_from_unit: turn * volume.world_from_unit,
+    }
+}
+
+#[test]
+fn two_clouds_are_what_a_ray_marcher_makes_of_their_sum() {
+    let _turn = gpu::turn();
+    let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));
+    let small = cloud([20, 10, 18], 8);
+    for (name, apart) in [("overlapping", 0.8_f32), ("side by side", 3.4)] {
+        // Of unequal voxels; values stay below 1 where they add up.
+        let volumes = [
+            moved(&small_cloud(), glam::Vec3::new(-0.5 * apart, 0.1, 0.2), 0.5),
+            moved(&small, glam::Vec3::new(0.5 * apart, -0.2, 0.0), 0.5 / 3.0),
+        ];
+        let fields = volumes.each_ref().map(field_of);
+        let splats = volumes.each_ref().map(splats);
+        let whole = {
+            let [a, b] = volumes.each_ref().map(Volume::bounds);
+            let (low, high) = (a.min.min(b.min), a.max.max(b.max));
+            let space = HostMat4::from_translation(low) * HostMat4::from_scale(high - low);
+            Volume::new([1; 3], vec![0.0], space).unwrap()
+        };
+        for degrees in [40.0, 130.0] {
+            let [view, way] = directions(degrees);
+            let (reference, camera) = camera(view, true);
+            let (reference_light, light) = light(way, false, &whole);
+            let scene = Scene {
+                field: &fields[..],
+                medium: MEDIUM,
+                light: reference_light,
+                radiance: RADIANCE,
+                step: 0.08,
+            };
+            let truth = scene.picture(&reference, SIZE.map(|side| side as usize));
+            let frame = SheetFrame { camera, light, lighting: lighting() };
+            let settings = SheetSettings { count: 96, light_size: [256; 2], ..SheetSettings::default() };
+            let shot = shoot_all(SheetInputs { splats: &splats, transfer: &transfer, surfaces: None }, settings, &frame);
+            let [radiance, transmittance] = differences(&shot, truth.iter());
+            println!("{name}, {degrees} degrees: radiance {radiance:.5}, transmittance {transmittance:.5}");
+            assert!(radiance <= 0.01, "{name}, {degrees}: {radiance}");
+            // Each of them matters.
+            for one in &splats {
+                let alone = shoot(one, &transfer, settings, &frame);
+                assert!(differences(&alone, truth.iter())[0] > 0.2, "{name}, {degrees}");
+            }
+        }
+    }
+}
+
+/// Voxels `from` to `to` along x as a volume by themselves.
+fn part(volume: &Volume, from: u32, to: u32) -> Volume {
+    let [width, height, slices] = volume.size;
+    let rows = volume.values.chunks_exact(width as usize);
+    let values = rows.flat_map(|row| row[from as usize..to as usize].to_vec()).collect();
+    let [from, to, width] = [from, to, width].map(|side| side as f32);
+    let place = HostMat4::from_translation(glam::Vec3::X * (from / width));
+    let stretch = HostMat4::from_scale(glam::Vec3::new((to - from) / width, 1.0, 1.0));
+    let size = [(to - from) as u32, height, slices];
+    Volume::new(size, values, volume.world_from_unit * place * stretch).unwrap()
+}
+
+#[test]
+fn a_cloud_in_two_halves_is_the_whole() {
+    let _turn = gpu::turn();
+    let volume = small_cloud();
+    let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));
+    let halves = [part(&volume, 0, 13), part(&volume, 13, 32)].map(|half| splats(&half));
+    let whole = splats(&volume);
+    assert_eq!(halves.iter().map(airlight::splatting::Splats::count).sum::<u64>(), whole.count());
+    for (degrees, count) in [(40.0, 64), (130.0, 37)] {
+        let [view, way] = directions(degrees);
+        let (_, camera) = camera(view, false);
+        let (_, light) = light(way, true, &volume);
+        let frame = SheetFrame { camera, light, lighting: lighting() };
+        let settings = SheetSettings { count, light_size: [192; 2], ..SheetSettings::default() };
+        let one = shoot(&whole, &transfer, settings, &frame);
+        let two = shoot_all(SheetInputs { splats: &halves, transfer: &transfer, surfaces: None }, settings, &frame);
+        let greatest = one.picture.iter().copied().fold(0.0_f32, f32::max);
+        let difference = one.picture.iter().zip(&two.picture).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        println!("{degrees} degrees: at most {:.6} of the greatest value", difference / greatest);
+        // Places of voxels are rounded otherwise, and a half float rounds by 0.0005 of itself.
+        assert!(difference <= 0.001 * greatest, "{degrees}: {difference} of {greatest}");
     }
 }
 

@@ -62,13 +62,23 @@ pub(super) trait LightPath {
 
     /// What else the picture's pass is to be given.
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)>;
+
+    /// Bytes of its buffers and textures.
+    fn memory(&self) -> u64 {
+        self.shadow().memory()
+    }
 }
 
 /// Light that is only taken away.
 pub(super) struct DirectLight {
     pass: Pass,
+<<<<<<< HEAD
     /// Of each sheet.
     bound: Vec<Bound>,
+=======
+    bound: Bound,
+    left: Buffer,
+>>>>>>> bench
     shadow: Texture,
 }
 
@@ -88,6 +98,7 @@ impl DirectLight {
         let left = Buffer::storage(gpu, 16 * u64::from(width) * u64::from(height));
         let mut all = resources.to_vec();
         all.extend([("left", (&left).into()), ("shadow", (&shadow).into())]);
+<<<<<<< HEAD
         let bind = |number: &Buffer| {
             let mut all = all.clone();
             all.push(("number", number.into()));
@@ -95,6 +106,10 @@ impl DirectLight {
         };
         let bound = numbers.iter().map(bind).collect::<Result<_, _>>()?;
         Ok(Self { pass, bound, shadow })
+=======
+        let bound = pass.bind_known(gpu, &all)?;
+        Ok(Self { pass, bound, left, shadow })
+>>>>>>> bench
     }
 }
 
@@ -129,5 +144,9 @@ impl LightPath for DirectLight {
 
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)> {
         Vec::new()
+    }
+
+    fn memory(&self) -> u64 {
+        self.left.raw.size() + self.shadow.memory()
     }
 }

@@ -102,6 +102,12 @@ impl<'a> Order<'a> {
         Ok(())
     }
 
+    /// Bytes of its own buffers.
+    pub(super) fn memory(&self) -> u64 {
+        let of = |batch: &SortedBatch<'_>| batch.ranges.raw.size() + batch.draws.raw.size();
+        self.dispatches.raw.size() + self.batches.iter().map(of).sum::<u64>()
+    }
+
     /// Arguments of a dispatch over the picture where a sheet has splats, of none where it has not.
     pub(super) fn over_picture(&self, sheet: u32) -> (&Buffer, u64) {
         (&self.dispatches, 32 * u64::from(sheet))

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Sheet after sheet into a picture and a shadow buffer.
 
+#[cfg(feature = "command")]
+mod parts;
+
 use super::error::in_range;
 use super::light_path::{DirectLight, LightPath, LightSheets};
 use super::means::Means;
@@ -22,18 +25,18 @@ use std::sync::{Mutex, PoisonError};
 
 /// What is drawn.
 #[derive(Clone, Copy)]
-pub struct SheetInputs<'a> {
+pub struct SheetInputs<'a, 't> {
     /// Of all volumes of the scene, which act as one.
     pub splats: &'a [Splats],
     /// Colour and opacity of their values.
-    pub transfer: &'a Transfer,
+    pub transfer: &'t Transfer,
     /// Polygons in, before and behind them.
     pub surfaces: Option<&'a Surfaces>,
 }
 
 /// Volumes drawn sheet by sheet.
 pub struct SheetPicture<'a> {
-    inputs: SheetInputs<'a>,
+    splats: &'a [Splats],
     settings: SheetSettings,
     surfaces: Option<SurfacePictures<'a>>,
     /// Whether the depth of the eye's camera is reversed, and that of the light's.
@@ -85,7 +88,7 @@ impl<'a> SheetPicture<'a> {
     pub fn new(
         gpu: &Gpu,
         shaders: &Shaders,
-        inputs: SheetInputs<'a>,
+        inputs: SheetInputs<'a, '_>,
         settings: SheetSettings,
         size: [u32; 2],
     ) -> Result<Self, SplattingError> {
@@ -170,7 +173,7 @@ impl<'a> SheetPicture<'a> {
             composites.push(passes.composite.bind_known(gpu, &resources)?);
         }
         Ok(Self {
-            inputs,
+            splats: inputs.splats,
             settings,
             surfaces,
             reversed: Mutex::default(),
@@ -200,11 +203,11 @@ impl<'a> SheetPicture<'a> {
         if camera != [width, height] {
             return Err(SplattingError::Viewport { camera, picture: [width, height] });
         }
-        let splats = self.inputs.splats;
+        let splats = self.splats;
         let mut points: Vec<Vec3> = splats.iter().flat_map(|splats| splats.corners.iter().copied()).collect();
         // Light that spreads has to pass surfaces sheet by sheet.
         if points.is_empty() || self.surface_light.is_some() {
-            points.extend(self.inputs.surfaces.iter().flat_map(|surfaces| &surfaces.corners));
+            points.extend(self.surfaces.iter().flat_map(SurfacePictures::corners));
         }
         let middle = points.iter().sum::<Vec3>() / points.len().max(1) as f32;
         let radius = self.settings.kernel.radius;
@@ -261,6 +264,13 @@ impl<'a> SheetPicture<'a> {
             composite.dispatch_groups(encoder, bound, "show_sheets", tiles(&self.picture))?;
         }
         Ok(())
+    }
+
+    /// Bytes of its textures and larger buffers, without those of the splats.
+    pub fn memory(&self) -> u64 {
+        let textures = self.means.iter().chain([&self.light_means, &self.picture]);
+        let textures: u64 = textures.map(Texture::memory).sum();
+        textures + self.sum.raw.size() + self.order.memory() + self.path.memory()
     }
 
     /// What is left of the light behind the last sheet, linear RGB; rgba16float.

@@ -167,6 +167,15 @@ impl Splats {
         self.batches.iter().map(|batch| u64::from(batch.count)).sum()
     }
 
+    /// Bytes of its buffers.
+    pub fn memory(&self) -> u64 {
+        let of = |batch: &Batch| {
+            let buffers = [&batch.uniform, &batch.splats, &batch.keys, &batch.order];
+            buffers.iter().map(|buffer| buffer.raw.size()).sum::<u64>()
+        };
+        self.uniform.raw.size() + self.batches.iter().map(of).sum::<u64>()
+    }
+
     /// In how many batches they are drawn.
     pub fn batches(&self) -> usize {
         self.batches.len()

@@ -138,6 +138,10 @@ impl<'a> SurfacePictures<'a> {
         }
     }
 
+    pub(super) fn corners(&self) -> &[Vec3] {
+        &self.surfaces.corners
+    }
+
     pub(super) fn eye_heights(&self) -> &Texture {
         &self.heights.target
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Volumes as sums of kernels, and rays through them: single scattering by marching, with a second march towards the light
-//! from every sample. No sheets, no footprints.
+//! from every sample, and every sample classified by itself. No sheets, no footprints.
 
 pub mod adding;
 pub mod polygons;
@@ -133,10 +133,70 @@ impl Field {
     }
 }
 
+/// Values in space, and how opaque they are.
+pub trait Matter: Sync {
+    /// Value at a point of the world.
+    fn at(&self, point: Vec3) -> f64;
+
+    /// Where a ray of unit direction may meet values above 0, metres from its origin and ahead of it.
+    fn stretch(&self, origin: Vec3, direction: Vec3) -> Option<[f64; 2]>;
+
+    /// Opacity of a value; the value itself, up to 1, unless said otherwise.
+    fn opacity(&self, value: f64) -> f64 {
+        value.min(1.0)
+    }
+}
+
+impl Matter for Field {
+    fn at(&self, point: Vec3) -> f64 {
+        Self::at(self, point)
+    }
+
+    fn stretch(&self, origin: Vec3, direction: Vec3) -> Option<[f64; 2]> {
+        Self::stretch(self, origin, direction)
+    }
+}
+
+/// The sum of all fields.
+impl Matter for [Field] {
+    fn at(&self, point: Vec3) -> f64 {
+        self.iter().map(|field| field.at(point)).sum()
+    }
+
+    fn stretch(&self, origin: Vec3, direction: Vec3) -> Option<[f64; 2]> {
+        let stretches = self.iter().filter_map(|field| field.stretch(origin, direction));
+        stretches.reduce(|[a, b], [begin, end]| [a.min(begin), b.max(end)])
+    }
+}
+
+/// Matter that is clear up to one value and opaque from another on, straight in between.
+#[derive(Clone, Copy, Debug)]
+pub struct Ramp<'a, M: ?Sized = Field> {
+    /// What has the values.
+    pub matter: &'a M,
+    /// The last value of opacity 0 and the first of opacity 1.
+    pub values: [f64; 2],
+}
+
+impl<M: Matter + ?Sized> Matter for Ramp<'_, M> {
+    fn at(&self, point: Vec3) -> f64 {
+        self.matter.at(point)
+    }
+
+    fn stretch(&self, origin: Vec3, direction: Vec3) -> Option<[f64; 2]> {
+        self.matter.stretch(origin, direction)
+    }
+
+    fn opacity(&self, value: f64) -> f64 {
+        let [clear, opaque] = self.values;
+        ((value - clear) / (opaque - clear)).clamp(0.0, 1.0)
+    }
+}
+
 /// What a medium of a field does with light.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
-    /// Albedo, linear RGB, of value 0 and of value 1, straight between; opacity is the value, up to 1.
+    /// Albedo, linear RGB, of value 0 and of value 1, straight between.
     pub albedo: [[f64; 3]; 2],
     /// Extinction of opacity 1, 1/m.
     pub extinction: f64,
@@ -146,11 +206,11 @@ pub struct Medium {
     pub g: f64,
 }
 
-/// A field in a light.
+/// A field, or other matter, in a light.
 #[derive(Clone, Copy, Debug)]
-pub struct Scene<'a> {
+pub struct Scene<'a, M: ?Sized = Field> {
     /// What is seen.
-    pub field: &'a Field,
+    pub field: &'a M,
     /// What it does with light.
     pub medium: Medium,
     /// Where the light is.
@@ -161,9 +221,9 @@ pub struct Scene<'a> {
     pub step: f64,
 }
 
-impl Scene<'_> {
+impl<M: Matter + ?Sized> Scene<'_, M> {
     fn extinction(&self, value: f64) -> f64 {
-        self.medium.extinction * value.min(1.0)
+        self.medium.extinction * self.field.opacity(value)
     }
 
     /// Optical depth from a point up to a distance.
@@ -194,7 +254,7 @@ impl Scene<'_> {
         for i in 0..steps as u32 {
             let point = origin + direction * (begin + (f64::from(i) + 0.5) * step);
             let value = self.field.at(point).min(1.0);
-            if value <= 0.0 {
+            if self.extinction(value) <= 0.0 {
                 continue;
             }
             let through = (-self.extinction(value) * step).exp();
@@ -281,5 +341,31 @@ mod tests {
         // What is not let through is scattered ambient light.
         assert!((red + transmittance - 1.0).abs() < 1e-9);
         assert_eq!(scene.ray(Vec3::new(40.0, 30.0, 4.0), Vec3::new(0.0, -1.0, 0.0)), [0.0, 0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn fields_add_up_and_ramps_classify_their_sum() {
+        let size = [5, 5, 5];
+        let kernel = Kernel::new(0.7, 2.25);
+        let field = |place: f64| {
+            let mut world_from_voxel = identity();
+            world_from_voxel.columns[3][0] = place;
+            let voxel_from_world = world_from_voxel.inverse().unwrap();
+            Field { size, values: vec![0.2; 125], world_from_voxel, voxel_from_world, kernel }
+        };
+        let fields = [field(0.0), field(3.0), field(100.0)];
+        let place = Vec3::new(2.5, 2.0, 2.0);
+        let sum: f64 = fields.iter().map(|field| field.at(place)).sum();
+        assert!((fields[..].at(place) - sum).abs() < 1e-15 && sum > 0.3);
+        let along = Vec3::new(1.0, 0.0, 0.0);
+        let all = fields[..].stretch(Vec3::new(-10.0, 2.0, 2.0), along);
+        assert_eq!(all, Some([7.75, 116.25]));
+        assert_eq!(fields[..].stretch(Vec3::new(-10.0, 20.0, 2.0), along), None);
+        let ramp = Ramp { matter: &fields[..], values: [0.1, 0.3] };
+        assert_eq!(
+            [0.0, 0.1, 0.2, 0.3, 5.0].map(|value| (ramp.opacity(value) * 1e9).round()),
+            [0.0, 0.0, 5e8, 1e9, 1e9]
+        );
+        assert_eq!(fields[..].opacity(5.0), 1.0);
     }
 }

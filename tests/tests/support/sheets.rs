@@ -64,7 +64,7 @@ pub fn shoot(splats: &Splats, transfer: &Transfer, settings: SheetSettings, fram
 }
 
 /// The same of several volumes and surfaces.
-pub fn shoot_all(inputs: SheetInputs<'_>, settings: SheetSettings, frame: &SheetFrame) -> Shot {
+pub fn shoot_all(inputs: SheetInputs<'_, '_>, settings: SheetSettings, frame: &SheetFrame) -> Shot {
     let size = [frame.camera.viewport.x as u32, frame.camera.viewport.y as u32];
     let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, size).unwrap();
     picture.set(gpu(), frame).unwrap();

@@ -10,6 +10,9 @@ mod painterly_stroke_costs;
 mod painterly_strokes;
 mod resolution;
 mod scattering;
+mod splatting;
+mod splatting_scenes;
+mod splatting_tables;
 mod stylize;
 mod tables;
 mod transfer;
@@ -57,7 +60,7 @@ pub struct Row {
     pub name: String,
     /// Its value: the median of the samples.
     pub value: f64,
-    /// `ratio`, `ms`, `MB`, `steps`, `fraction`, or what is counted.
+    /// `ratio`, `ms`, `ns`, `MB`, `steps`, `fraction`, or what is counted.
     pub unit: &'static str,
     /// Which way is better.
     pub better: &'static str,
@@ -75,7 +78,7 @@ struct Report {
     rows: Vec<Row>,
 }
 
-const SYSTEMS: [&str; 4] = ["painterly", "scattering", "stylize", "transmittance"];
+const SYSTEMS: [&str; 5] = ["painterly", "scattering", "splatting", "stylize", "transmittance"];
 
 /// Runs the command.
 pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
@@ -108,6 +111,12 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         add(scattering::rows(&gpu, &shaders, quiet)?);
         if options.tables {
             add(tables::scattering(&gpu, &shaders, quiet)?);
+        }
+    }
+    if asked("splatting") {
+        add(splatting::rows(&gpu, &shaders, quiet)?);
+        if options.tables {
+            add(splatting_tables::rows(&gpu, &shaders, quiet)?);
         }
     }
     if asked("stylize") {
