@@ -78,13 +78,13 @@ fn mean_square_slope(g: f32, cone: f32) -> f32 {
     let end = clamp(cone, 0.0, 3.14159265);
     var sum = 0.0;
     for (var i = 0.5; i < STEPS; i += 1.0) {
-        // Midpoints that lie closer where phase functions peak.
+        // Midpoints that lie closer at both ends, where phase functions peak.
         let unit = i / STEPS;
-        let angle = end * unit * unit;
+        let angle = end * unit * unit * (3.0 - 2.0 * unit);
         let slope = tan(min(angle, STEEPEST));
-        sum += henyey_greenstein(cos(angle), g) * sin(angle) * slope * slope * unit;
+        sum += henyey_greenstein(cos(angle), g) * sin(angle) * slope * slope * unit * (1.0 - unit);
     }
-    return sum * (4.0 * 3.14159265 / STEPS) * end / max(cone_share(g, cone), 1e-12);
+    return sum * (12.0 * 3.14159265 / STEPS) * end / max(cone_share(g, cone), 1e-12);
 }
 
 /// Variance along either axis across the light of where scattered light goes on, metres^2. `metres`: of the light's way through the

@@ -150,12 +150,12 @@ fn begin_light(@builtin(global_invocation_id) id: vec3<u32>) {
 #endif
 }
 
-/// What the sheet does at a texel, of its mean value.
-fn optics_of(texel: vec2<u32>, mean: f32) -> SheetOptics {
+/// What the sheet does at a texel, of its mean value. `shares`: of the cones.
+fn optics_of(texel: vec2<u32>, mean: f32, shares: vec2<f32>) -> SheetOptics {
     let ray = view_ray(light_camera, ndc_from_pixel(light_camera, vec2<f32>(texel) + 0.5));
     let matter = sheet_matter(transfer, linear_sampler, mean);
     let optical_depth = lighting.extinction * matter.a * metres_in_sheet(sheets, ray.direction);
-    return sheet_optics(optical_depth, matter.rgb, cone_shares(scattering, lighting.g));
+    return sheet_optics(optical_depth, matter.rgb, shares);
 }
 
 /// Convolves what a tile of the sheet scatters along rows. `corner`: the tile's first texel; `local`: of the thread.
@@ -168,6 +168,7 @@ fn convolve_rows(corner: vec2<u32>, local: vec2<u32>, stage: u32) {
 #endif
     radius = min(radius, MOST_RADIUS);
     let width = TILE.x + 2u * radius;
+    let shares = cone_shares(scattering, lighting.g);
     for (var i = local.y * TILE.x + local.x; i < width * TILE.y; i += TILE.x * TILE.y) {
         let column = i % width;
         let texel = vec2<u32>(corner.x + column - radius, corner.y + i / width);
@@ -186,7 +187,7 @@ fn convolve_rows(corner: vec2<u32>, local: vec2<u32>, stage: u32) {
 #else
             let mean = sheet_mean(textureLoad(light_sheet, texel, 0));
 #endif
-            sent = optics_of(texel, mean);
+            sent = optics_of(texel, mean, shares);
             let forward = sent.forward * color;
 #ifdef POLYGONS
             let surface = textureLoad(light_heights, texel, 0).x;
