@@ -17,8 +17,8 @@ mod sheets;
 use airlight::core::{Camera, DepthRange, Light, PerspectiveView};
 use airlight::data::cloud;
 use airlight::splatting::{
-    LightTransport, Scattering, ScatteringSettings, Shading, SheetFrame, SheetLighting, SheetInputs, SheetPicture,
-    SheetSettings, SplattingError,
+    LightTransport, Scattering, ScatteringSettings, Shading, SheetFrame, SheetInputs, SheetLighting,
+    SheetPicture, SheetSettings, SplattingError,
 };
 use airlight_tests::reference::phase::henyey_greenstein;
 use airlight_tests::reference::splatting::adding::{Layer, exact, swept};
@@ -473,7 +473,8 @@ fn impossible_settings_are_refused() {
     let with = |way: ScatteringSettings, light_size| {
         let settings =
             SheetSettings { light_size, ..settings(LightTransport::Scattering(way), Shading::Scattering) };
-        let inputs = SheetInputs { splats: std::slice::from_ref(&splats), transfer: &transfer, surfaces: None };
+        let inputs =
+            SheetInputs { splats: std::slice::from_ref(&splats), transfer: &transfer, surfaces: None };
         SheetPicture::new(gpu(), shaders(), inputs, settings, [8, 8]).err()
     };
     let possible = ScatteringSettings::default();

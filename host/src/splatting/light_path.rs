@@ -72,13 +72,9 @@ pub(super) trait LightPath {
 /// Light that is only taken away.
 pub(super) struct DirectLight {
     pass: Pass,
-<<<<<<< HEAD
     /// Of each sheet.
     bound: Vec<Bound>,
-=======
-    bound: Bound,
     left: Buffer,
->>>>>>> bench
     shadow: Texture,
 }
 
@@ -98,18 +94,13 @@ impl DirectLight {
         let left = Buffer::storage(gpu, 16 * u64::from(width) * u64::from(height));
         let mut all = resources.to_vec();
         all.extend([("left", (&left).into()), ("shadow", (&shadow).into())]);
-<<<<<<< HEAD
         let bind = |number: &Buffer| {
             let mut all = all.clone();
             all.push(("number", number.into()));
             pass.bind_known(gpu, &all)
         };
         let bound = numbers.iter().map(bind).collect::<Result<_, _>>()?;
-        Ok(Self { pass, bound, shadow })
-=======
-        let bound = pass.bind_known(gpu, &all)?;
         Ok(Self { pass, bound, left, shadow })
->>>>>>> bench
     }
 }
 

@@ -75,7 +75,7 @@ pub struct Reflection {
 }
 
 /// A medium with surfaces in it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Mixed<'a> {
     /// The medium and the light.
     pub scene: Scene<'a>,
