@@ -67,12 +67,13 @@ mod tests {
         let layers = [Layer::new(0.3, 0.99, [0.8, 0.15]); 20];
         let all = exact(&layers);
         let close = |stack: Stack, through: f64, back: f64| {
-            assert!((stack.through - through).abs() < 5.1e-4, "{stack:?}");
-            assert!((stack.back - back).abs() < 5.1e-4, "{stack:?}");
+            assert!((stack.through - through).abs() < 5.1e-5, "{stack:?}");
+            assert!((stack.back - back).abs() < 5.1e-5, "{stack:?}");
         };
         close(all, 0.3910, 0.3510);
-        close(swept(&layers, 1), 0.330, 0.327);
-        close(swept(&layers, 2), 0.384, 0.349);
+        close(swept(&layers, 1), 0.3301, 0.3269);
+        // EQUATIONS.md rounds 0.34848 to 0.349.
+        close(swept(&layers, 2), 0.3837, 0.3485);
         let many = swept(&layers, 200);
         assert!((many.through - all.through).abs() < 1e-12 && (many.back - all.back).abs() < 1e-12);
         let four = swept(&layers, 4);
