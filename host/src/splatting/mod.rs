@@ -13,11 +13,16 @@ mod order;
 mod passes;
 mod picture;
 mod sheets;
+mod soft_light;
+mod soft_plane;
+mod soft_schedule;
 mod splats;
 
 pub use error::SplattingError;
-pub use frame::{LightTransport, Shading, SheetFrame, SheetLighting, SheetSettings};
+pub use frame::{LightTransport, Shading, SheetFrame, SheetLighting, SheetSettings, SoftShadows};
 pub use kernel::Kernel;
 pub use picture::SheetPicture;
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
+pub use soft_plane::{SoftLight, SoftPlane};
+pub use soft_schedule::{LayerBlur, LayerMerge, SOFT_LAYERS, SOFT_SPREAD, SoftSchedule};
 pub use splats::{SplatBatch, SplatVolume, Splats};

@@ -6,6 +6,7 @@ use super::light_path::{DirectLight, LightPath, LightSheets};
 use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
+use super::soft_light::AreaLight;
 use super::{
     LightTransport, SheetFrame, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
 };
@@ -108,6 +109,11 @@ impl<'a> SheetPicture<'a> {
         ];
         let path: Box<dyn LightPath> = match settings.transport {
             LightTransport::Direct => Box::new(DirectLight::new(gpu, shaders, &all, settings.light_size)?),
+            LightTransport::Soft(soft) => {
+                let light =
+                    AreaLight::new(gpu, shaders, &all, soft, settings.count, settings.light_size, None)?;
+                Box::new(light)
+            }
         };
         all.push(("shadow", path.shadow().into()));
         all.extend(path.resources());
@@ -161,9 +167,11 @@ impl<'a> SheetPicture<'a> {
         };
         let light = frame.light_direction(middle);
         let sheets = Sheets::between(frame.view_direction(), light, self.settings.count, &points, reach)?;
+        let hulls = self.splats.iter().flat_map(|splats| splats.volume.hull(radius));
+        let light_camera = self.path.set(gpu, &sheets, frame, &hulls.collect::<Vec<_>>())?;
         let to = &self.uniforms;
         to.camera.write(gpu, &frame.camera);
-        to.light_camera.write(gpu, &frame.light_camera(self.settings.light_size));
+        to.light_camera.write(gpu, &light_camera);
         to.light.write(gpu, &frame.light);
         to.sheets.write(gpu, &sheets);
         to.lighting.write(gpu, &frame.lighting);
