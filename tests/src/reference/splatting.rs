@@ -2,6 +2,8 @@
 //! Volumes as sums of kernels, and rays through them: single scattering by marching, with a second march towards the light
 //! from every sample. No sheets, no footprints.
 
+pub mod area_light;
+
 use super::camera::Camera;
 use super::light::Light;
 use super::phase::henyey_greenstein;
