@@ -28,7 +28,7 @@ use probing::{f, hold, worst};
 use sheets::{colored, metres, shoot, splats};
 use soft::{Lit, crossings, vector};
 
-pub fn parallel(direction: Vec3, height: f32, side: u32) -> Camera {
+fn parallel(direction: Vec3, height: f32, side: u32) -> Camera {
     let view = OrthographicView {
         eye: -60.0 * direction,
         target: Vec3::ZERO,
@@ -129,12 +129,12 @@ fn penumbras_of_half_planes_have_their_width_at_any_tilt() {
                 for ((depth, sheet), [shares, _]) in depths.iter().zip(at).zip(lit.shadows(&heights, &at)) {
                     let points = lit.points(lit.middle(sheet));
                     let of_depth = points.iter().zip(&shares).filter(|(point, _)| {
-                        (-point.y / depth - 1.0).abs() < 0.12 && point.z.abs() < 1.5 && point.x.abs() < 3.0
+                        (-point.y / depth - 1.0).abs() < 0.25 && point.z.abs() < 1.5 && point.x.abs() < 3.0
                     });
                     let profile: Vec<(f64, f64)> = of_depth
                         .map(|(point, share)| (place_on_light(&light, *point, 0.0, 0.0), f(*share)))
                         .collect();
-                    let [low, middle, high] = crossings(&profile);
+                    let [low, middle, high] = crossings(&profile, width);
                     let found = (high - low) / (0.8 * width);
                     let shift = middle / width;
                     println!(
@@ -173,7 +173,7 @@ fn two_half_planes_have_a_penumbra_each() {
             });
             let profile: Vec<(f64, f64)> =
                 own.map(|(point, share)| (place_on_light(&light, *point, height, edge), f(*share))).collect();
-            let [low, middle, high] = crossings(&profile);
+            let [low, middle, high] = crossings(&profile, width);
             let found = (high - low).abs() / (0.8 * width);
             println!(
                 "eye at {angle}, edge at {height} m: width {found:.3}, middle off by {:.3} of it",
@@ -245,7 +245,6 @@ fn a_slab_of_splats_has_the_same_penumbra() {
                             (place_on_light(&light, *point, height, 0.0), 1.0 - (1.0 - f(texel[0])) / whole)
                         })
                         .collect();
-                    let [low, middle, high] = crossings(&profile);
                     let way = light.position.as_dvec3().y;
                     // The kernel's own blur, seen on the light.
                     let (width, seen) = if light.kind == 0 {
@@ -253,6 +252,7 @@ fn a_slab_of_splats_has_the_same_penumbra() {
                     } else {
                         (f64::from(soft.size), own.sqrt() * (way - target) / own_depth)
                     };
+                    let [low, middle, high] = crossings(&profile, width);
                     let expected = 2.563 * ((0.312 * width).powi(2) + seen * seen).sqrt();
                     let (found, shift) = ((high - low) / expected, middle / width);
                     println!(

@@ -37,8 +37,8 @@ pub enum SplattingError {
     /// A light in a plane parallel to the sheets has to be before the whole scene.
     #[error(
         "soft shadows are impossible here: along the sheets' normal the scene lies from {nearest} to {farthest} m before \
-         the light, and all of it has to lie before the light, the nearest at least a thousandth as far as the farthest; \
-         move the light away"
+         the light, and all of it has to lie before the light, the nearest at least a thousandth as far as the farthest, \
+         and none 1e12 m away"
     )]
     LightBehind {
         /// Distance of the nearest point along the normal, metres; negative behind the light. Of a directional light the cosine

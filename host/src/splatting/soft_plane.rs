@@ -140,8 +140,8 @@ impl SoftPlane {
         let last = first + f64::from(sheets.count + 1) * thickness;
         let distances = points.iter().map(|point| normal.dot(point.as_dvec3()) - height);
         let (near, far) = distances.fold((first, last), |(a, b), d| (a.min(d), b.max(d)));
-        // Written so that a NaN is refused as well.
-        if !(near > 1e-3 * far && far.is_finite()) {
+        // Written so that a NaN is refused as well; farther ones leave no digits.
+        if !(near > 1e-3 * far && far < 1e12) {
             return Err(SplattingError::LightBehind { nearest: near as f32, farthest: far as f32 });
         }
         let middle = points.iter().map(|point| point.as_dvec3()).sum::<DVec3>() / points.len().max(1) as f64;

@@ -180,13 +180,25 @@ impl Lit {
     }
 }
 
-/// Where a profile of (place, share) crosses 10, 50 and 90 percent: mean places of the samples around them.
-pub fn crossings(profile: &[(f64, f64)]) -> [f64; 3] {
+/// Where a profile of (place, share) crosses 10, 50 and 90 percent: means of samples within a twelfth of `width`, between which the
+/// logarithm of share / (1 - share) is taken as straight.
+pub fn crossings(profile: &[(f64, f64)], width: f64) -> [f64; 3] {
+    let mut bins = std::collections::BTreeMap::<i64, [f64; 3]>::new();
+    for (place, share) in profile {
+        let bin = bins.entry((place / width * 12.0).floor() as i64).or_default();
+        for (sum, value) in bin.iter_mut().zip([*place, *share, 1.0]) {
+            *sum += value;
+        }
+    }
+    let odds = |share: f64| (share / (1.0 - share)).ln();
+    let means =
+        bins.values().map(|[place, share, count]| (place / count, (share / count).clamp(1e-4, 0.9999)));
+    let means: Vec<(f64, f64)> = means.collect();
     [0.1, 0.5, 0.9].map(|level| {
-        let near = profile.iter().filter(|(_, share)| (share - level).abs() < 0.03);
-        let (sum, count) = near.fold((0.0, 0), |(sum, count), (place, _)| (sum + place, count + 1));
-        assert!(count > 1, "no samples at {level}");
-        sum / f64::from(count)
+        let crosses = |pair: &&[(f64, f64)]| (pair[0].1 - level) * (pair[1].1 - level) <= 0.0;
+        let pair = means.windows(2).find(crosses).unwrap_or_else(|| panic!("never {level}: {means:?}"));
+        let part = (odds(level) - odds(pair[0].1)) / (odds(pair[1].1) - odds(pair[0].1));
+        pair[0].0 + part * (pair[1].0 - pair[0].0)
     })
 }
 
