@@ -13,8 +13,7 @@ use airlight::painterly::{
 };
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::splatting::{
-    Kernel, LayerBlur, LayerMerge, SheetLighting, SheetNumber, SheetTargets, Sheets, SoftLight, SplatBatch,
-    SplatVolume,
+    Kernel, SheetLighting, SheetNumber, SheetTargets, Sheets, SoftLight, SplatBatch, SplatVolume,
 };
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
@@ -329,8 +328,6 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: SheetLighting {
         ambient: Vec3, extinction: f32, g: f32, diffuse: f32, specular: f32, shininess: f32,
     });
-    twin!(twins: LayerMerge { open: u32, into: u32 });
-    twin!(twins: LayerBlur { variance: Vec2, distance: UVec2 });
     twin!(twins: SoftLight {
         size: UVec2, texel: Vec2, height: f32, local: u32, filling: f32, deepest: f32,
     });

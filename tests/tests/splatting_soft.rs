@@ -141,10 +141,13 @@ fn penumbras_of_half_planes_have_their_width_at_any_tilt() {
                         "light {}, eye at {angle} about {axis:?}, {depth} m behind: width {found:.3}, middle off by {shift:.3} of it",
                         light.kind
                     );
-                    assert!(
-                        (found - 1.0).abs() < 0.1 && shift.abs() < 0.05,
-                        "{light:?} {angle} {axis} {depth}"
-                    );
+                    // An edge of heights lies between texels: up to half of one, as it is seen on the light.
+                    let texel = f64::from(lit.plane.light.texel.max_element());
+                    let far = light.position.as_dvec3().y;
+                    let texel =
+                        if light.kind == 0 { texel / depth } else { texel * far * (far + depth) / depth };
+                    let most = 0.05 + 0.6 * texel / width;
+                    assert!((found - 1.0).abs() < 0.1 && shift.abs() < most, "{angle} {axis} {depth}");
                 }
             }
         }
@@ -206,8 +209,9 @@ fn a_slab_of_splats_has_the_same_penumbra() {
             let splats = splats(&volume);
             let height = f64::from(layer) + 0.5 - 20.0;
             for angle in [0.0_f32, 60.0, 120.0] {
-                // Sheets of a dense slab shade each other's edge as if by chance: it is darker, and tilted ones leak; see the book.
-                let dense = (angle == 0.0).then_some((12.0, 0.3));
+                // Sheets of a dense slab shade each other's edge as if by chance: too dark by up
+                // to a third of the width, a known limit. Tilted sheets of such a slab leak; see the book.
+                let dense = (angle == 0.0).then_some((12.0, 0.35));
                 for (thick, tolerance) in [Some((0.4_f32, 0.1)), dense].into_iter().flatten() {
                     let (sine, cosine) = angle.to_radians().sin_cos();
                     let view = Vec3::new(0.0, -cosine, sine);
