@@ -113,7 +113,7 @@ fn penumbras_of_half_planes_have_their_width_at_any_tilt() {
     let cases = [
         (sun(Vec3::Y), 10.0_f32),
         (sun(Vec3::new(0.1, 1.0, 0.2)), 10.0),
-        (lamp(Vec3::new(0.4, 6.0, 0.0)), 1.2),
+        (lamp(Vec3::new(0.4, 6.0, 0.0)), 2.4),
     ];
     for (light, size) in cases {
         let width =
