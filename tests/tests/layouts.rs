@@ -13,7 +13,7 @@ use airlight::painterly::{
 };
 use airlight::scattering::{Frame, MarchParameters, Medium, ProjectiveRows, ProjectiveSplit, Reduction};
 use airlight::splatting::{
-    Kernel, Scattering, SheetLighting, SheetNumber, SheetTargets, Sheets, SplatBatch, SplatVolume,
+    Kernel, Scattering, SheetLighting, SheetNumber, SheetTargets, Sheets, SoftLight, SplatBatch, SplatVolume,
 };
 use airlight::stylize::{
     DiffusionLevel, Disc, EpipolarKernel, Epipole, HoleParameters, TransferFunction, TransferLayer,
@@ -328,6 +328,9 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: Scattering { forward_cone: f32, back_cone: f32, free_path: f32, reserved_a: f32 });
     twin!(twins: SheetLighting {
         ambient: Vec3, extinction: f32, g: f32, diffuse: f32, specular: f32, shininess: f32,
+    });
+    twin!(twins: SoftLight {
+        size: UVec2, texel: Vec2, height: f32, local: u32, filling: f32, deepest: f32,
     });
     twins
 }

@@ -51,6 +51,19 @@ pub enum SplattingError {
         /// What the device binds.
         limit: u64,
     },
+    /// A light in a plane parallel to the sheets has to be before the whole scene.
+    #[error(
+        "soft shadows are impossible here: along the sheets' normal the scene lies from {nearest} to {farthest} m before \
+         the light, and all of it has to lie before the light, the nearest at least a thousandth as far as the farthest, \
+         and none 1e12 m away"
+    )]
+    LightBehind {
+        /// Distance of the nearest point along the normal, metres; negative behind the light. Of a directional light the cosine
+        /// between its way and the normal.
+        nearest: f32,
+        /// Distance of the farthest point.
+        farthest: f32,
+    },
     /// The light.
     #[error(transparent)]
     Light(#[from] LightError),

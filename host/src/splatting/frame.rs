@@ -62,6 +62,8 @@ pub enum LightTransport {
     Direct,
     /// The medium also scatters it on and back.
     Scattering(ScatteringSettings),
+    /// The same, from an area light that casts penumbras.
+    Soft(SoftShadows),
 }
 
 /// How sheets scatter light on, and back.
@@ -83,6 +85,34 @@ impl Default for ScatteringSettings {
     /// Forward only, within 60 degrees; with `back`, four sweeps.
     fn default() -> Self {
         Self { cone: 60.0, free_path: 0.0, back: false, sweeps: 4 }
+    }
+}
+
+/// Shadows of an area light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SoftShadows {
+    /// Of a directional light the angle that it has in the sky, degrees, 0 to 60; of a light at a point the side of a square that faces
+    /// the scene, metres, 0 to 1000000.
+    pub size: f32,
+    /// Depth of solids where their surface rises by a metre for each metre across the light, metres; about half the width of things.
+    /// Solids end at their last surface in any case.
+    pub filling: f32,
+    /// Greatest depth of solids, metres; 0 where surfaces are thin.
+    pub deepest: f32,
+}
+
+impl SoftShadows {
+    /// A light of a size; see there. Solids are as deep as the slope of their surface says, about things of a metre.
+    pub fn new(size: f32) -> Self {
+        Self { size, filling: 1.0, deepest: 1e6 }
+    }
+
+    pub(super) fn check(&self, directional: bool) -> Result<(), SplattingError> {
+        let (most, range) =
+            if directional { (60.0, "from 0 to 60 degrees") } else { (1e6, "from 0 to 1000000 m") };
+        in_range("size of the light", self.size, 0.0..=most, range)?;
+        in_range("filling of solids", self.filling, 0.0..=1e6, "from 0 to 1000000 m")?;
+        in_range("greatest depth of solids", self.deepest, 0.0..=1e6, "from 0 to 1000000 m")
     }
 }
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How light goes from sheet to sheet.
 
-use super::SplattingError;
 use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::LIGHT;
+use super::{SheetFrame, Sheets, SplattingError};
+use crate::core::Camera;
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
+use glam::Vec3;
 
 /// Draws what sheets are along light rays.
 pub(super) struct LightSheets<'p> {
@@ -28,6 +30,18 @@ impl LightSheets<'_> {
 
 /// What a way of light through the sheets does, in the order in which it is asked.
 pub(super) trait LightPath {
+    /// Before a frame: the camera of the shadow buffer. `points`: metres, whose convex hull holds all splats.
+    fn set(
+        &self,
+        _gpu: &Gpu,
+        _sheets: &Sheets,
+        frame: &SheetFrame,
+        _points: &[Vec3],
+    ) -> Result<Camera, SplattingError> {
+        let [width, height, _] = self.shadow().size();
+        Ok(frame.light_camera([width, height]))
+    }
+
     /// Before the first sheet.
     fn begin(
         &self,

@@ -14,14 +14,21 @@ mod passes;
 mod picture;
 mod scattered_light;
 mod sheets;
+mod soft_light;
+mod soft_plane;
+mod soft_schedule;
 mod splats;
 mod surfaces;
 
 pub use error::SplattingError;
-pub use frame::{LightTransport, ScatteringSettings, Shading, SheetFrame, SheetLighting, SheetSettings};
+pub use frame::{
+    LightTransport, ScatteringSettings, Shading, SheetFrame, SheetLighting, SheetSettings, SoftShadows,
+};
 pub use kernel::Kernel;
 pub use picture::{SheetInputs, SheetPicture};
 pub use scattered_light::Scattering;
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
+pub use soft_plane::{SoftLight, SoftPlane};
+pub use soft_schedule::{LayerBlur, LayerMerge, SOFT_LAYERS, SOFT_SPREAD, SoftSchedule};
 pub use splats::{SplatBatch, SplatVolume, Splats};
 pub use surfaces::Surfaces;

@@ -53,7 +53,7 @@ impl Passes {
             samples: 1,
         };
         let (scattering, back) = match settings.transport {
-            LightTransport::Direct => (false, false),
+            LightTransport::Direct | LightTransport::Soft(_) => (false, false),
             LightTransport::Scattering(scattering) => (true, scattering.back),
         };
         let composite = flags(&[

@@ -10,6 +10,7 @@ use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
 use super::scattered_light::ScatteredLight;
+use super::soft_light::{AreaLight, LitSurfaces};
 use super::surfaces::{SurfacePictures, Surfaces};
 use super::{
     LightTransport, SheetFrame, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
@@ -114,7 +115,8 @@ impl<'a> SheetPicture<'a> {
         let numbers: Vec<Buffer> = (0..settings.count).map(|index| number(gpu, index)).collect();
         let buffers = [&uniforms.camera, &uniforms.light_camera, sheets[0]];
         let surfaces = inputs.surfaces.map(|surfaces| {
-            SurfacePictures::new(gpu, shaders, surfaces, buffers, [size, settings.light_size], false)
+            let far = matches!(settings.transport, LightTransport::Soft(_));
+            SurfacePictures::new(gpu, shaders, surfaces, buffers, [size, settings.light_size], far)
         });
         let surfaces = surfaces.transpose()?;
         let means =
@@ -156,6 +158,13 @@ impl<'a> SheetPicture<'a> {
                 let (size, heights) =
                     (settings.light_size, surfaces.as_ref().map(SurfacePictures::light_heights));
                 Box::new(ScatteredLight::new(gpu, shaders, &all, size, &scattering, &numbers, heights)?)
+            }
+            LightTransport::Soft(soft) => {
+                let lit = surfaces.as_ref().and_then(|surfaces| {
+                    let far_heights = surfaces.light_far_heights()?;
+                    Some(LitSurfaces { heights: surfaces.light_heights(), far_heights })
+                });
+                Box::new(AreaLight::new(gpu, shaders, &all, soft, settings.count, settings.light_size, lit)?)
             }
         };
         all.push(("shadow", path.shadow().into()));
@@ -217,7 +226,9 @@ impl<'a> SheetPicture<'a> {
         };
         let light = frame.light_direction(middle);
         let sheets = Sheets::between(frame.view_direction(), light, self.settings.count, &points, reach)?;
-        let light_camera = frame.light_camera(self.settings.light_size);
+        let hulls = splats.iter().flat_map(|splats| splats.volume.hull(radius));
+        let corners = self.surfaces.iter().flat_map(SurfacePictures::corners).copied();
+        let light_camera = self.path.set(gpu, &sheets, frame, &hulls.chain(corners).collect::<Vec<_>>())?;
         let reversed = [frame.camera.is_reversed(), light_camera.is_reversed()];
         *self.reversed.lock().unwrap_or_else(PoisonError::into_inner) = reversed;
         let to = &self.uniforms;

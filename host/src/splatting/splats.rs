@@ -32,6 +32,18 @@ impl SplatVolume {
     }
 }
 
+impl SplatVolume {
+    /// Corners in the world, metres, of the box that holds all splats of `radius` voxels.
+    pub(super) fn hull(&self, radius: f32) -> [Vec3; 8] {
+        std::array::from_fn(|corner| {
+            let high = [0, 1, 2].map(|axis| corner >> axis & 1 == 1);
+            let last = self.size.as_vec3() - 1.0 + radius;
+            let place = [0, 1, 2].map(|axis| if high[axis] { last[axis] } else { -radius });
+            self.world_from_voxel.transform_point3(Vec3::from(place))
+        })
+    }
+}
+
 /// The uniform `SplatBatch` of `splatting/find_splats`.
 #[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
 pub struct SplatBatch {

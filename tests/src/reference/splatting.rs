@@ -5,6 +5,8 @@
 pub mod adding;
 pub mod polygons;
 
+pub mod area_light;
+
 use super::camera::Camera;
 use super::light::Light;
 use super::phase::henyey_greenstein;
