@@ -11,7 +11,7 @@ mod gpu;
 use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView, Transfer, TransferPoint};
 use airlight::data::Volume;
 
-use airlight::splatting::{SheetFrame, SheetLighting, SheetPicture, SheetSettings, Splats};
+use airlight::splatting::{SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings, Splats};
 use glam::{Mat4, Vec3};
 use gpu::{gpu, shaders};
 
@@ -38,9 +38,9 @@ fn transmitted(volume: &Volume, camera: Camera, light: Light, extinction: f32, c
     let splats = Splats::new(gpu(), shaders(), volume, 0.0, None).unwrap();
     let settings = SheetSettings { count, light_size: [64; 2], ..SheetSettings::default() };
     let size = [camera.viewport.x as u32, camera.viewport.y as u32];
-    let picture =
-        SheetPicture::new(gpu(), shaders(), std::slice::from_ref(&splats), &straight(), settings, size)
-            .unwrap();
+    let (splats, transfer) = (std::slice::from_ref(&splats), straight());
+    let inputs = SheetInputs { splats, transfer: &transfer, light_texture: None };
+    let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, size).unwrap();
     let lighting = SheetLighting::new(2.0 * extinction);
     picture.set(gpu(), &SheetFrame { camera, light, lighting }).unwrap();
     let mut encoder = gpu().encoder();

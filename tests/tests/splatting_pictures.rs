@@ -12,7 +12,10 @@ mod sheets;
 
 use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView};
 use airlight::data::{Volume, cloud};
-use airlight::splatting::{Shading, SheetFrame, SheetLighting, SheetSettings, Splats, SplattingError};
+use airlight::splatting::{
+    Shading, SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings, Splats, SplattingError,
+    light_around,
+};
 use glam::Vec3;
 use gpu::{gpu, shaders};
 use sheets::{colored, metres, shoot, splats};
@@ -170,14 +173,12 @@ fn impossible_settings_are_refused() {
     let splats = splats(&volume);
     let transfer = colored([Vec3::ONE; 2]);
     let new = |settings, size| {
-        airlight::splatting::SheetPicture::new(
-            gpu(),
-            shaders(),
-            std::slice::from_ref(&splats),
-            &transfer,
-            settings,
-            size,
-        )
+        let inputs = SheetInputs {
+            splats: std::slice::from_ref(&splats),
+            transfer: &transfer,
+            light_texture: None,
+        };
+        SheetPicture::new(gpu(), shaders(), inputs, settings, size)
     };
     for (settings, size) in [
         (few(0), [48, 32]),

@@ -67,14 +67,16 @@ pub(super) struct DirectLight {
 }
 
 impl DirectLight {
-    /// `resources`: all that the picture has, by name.
+    /// `resources`: all that the picture has, by name. `textured`: a light texture among them.
     pub(super) fn new(
         gpu: &Gpu,
         shaders: &Shaders,
         resources: &[(&str, Resource<'_>)],
         [width, height]: [u32; 2],
+        textured: bool,
     ) -> Result<Self, SplattingError> {
-        let pass = Pass::compute(gpu, shaders, "splatting/light_sheet", "default")?;
+        let form = if textured { "textured" } else { "default" };
+        let pass = Pass::compute(gpu, shaders, "splatting/light_sheet", form)?;
         let shadow = Texture::storage(gpu, [width, height], LIGHT);
         let left = Buffer::storage(gpu, 16 * u64::from(width) * u64::from(height));
         let mut all = resources.to_vec();

@@ -6,8 +6,10 @@
 
 mod error;
 mod frame;
+mod inputs;
 mod kernel;
 mod light_path;
+mod lights;
 mod means;
 mod order;
 mod passes;
@@ -17,7 +19,9 @@ mod splats;
 
 pub use error::SplattingError;
 pub use frame::{LightTransport, Shading, SheetFrame, SheetLighting, SheetSettings};
+pub use inputs::SheetInputs;
 pub use kernel::Kernel;
+pub use lights::light_around;
 pub use picture::SheetPicture;
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
 pub use splats::{SplatBatch, SplatVolume, Splats};

@@ -7,9 +7,9 @@ use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
 use super::{
-    LightTransport, SheetFrame, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
+    LightTransport, SheetFrame, SheetInputs, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
 };
-use crate::core::{Camera, Light, Transfer};
+use crate::core::{Camera, Light};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Resource};
 use crate::resource::{Buffer, Sampler, Texture};
@@ -59,18 +59,18 @@ impl Uniforms {
 }
 
 impl<'a> SheetPicture<'a> {
-    /// Builds passes and buffers for pictures of `size`. `splats`: of all volumes of the scene, which act as one.
+    /// Builds passes and buffers for pictures of `size`.
     ///
     /// # Errors
     /// [`SplattingError`].
     pub fn new(
         gpu: &Gpu,
         shaders: &Shaders,
-        splats: &'a [Splats],
-        transfer: &Transfer,
+        inputs: SheetInputs<'a>,
         settings: SheetSettings,
         size: [u32; 2],
     ) -> Result<Self, SplattingError> {
+        let SheetInputs { splats, transfer, light_texture } = inputs;
         in_range("number of sheets", settings.count as f32, 1.0..=4096.0, "from 1 to 4096")?;
         let limit = gpu.limits.max_texture_dimension_2d as f32;
         for side in size.into_iter().chain(settings.light_size) {
@@ -106,8 +106,12 @@ impl<'a> SheetPicture<'a> {
             ("sum", (&sum).into()),
             ("picture", (&picture).into()),
         ];
+        all.extend(light_texture.map(|texture| ("light_texture", texture.into())));
         let path: Box<dyn LightPath> = match settings.transport {
-            LightTransport::Direct => Box::new(DirectLight::new(gpu, shaders, &all, settings.light_size)?),
+            LightTransport::Direct => {
+                let textured = light_texture.is_some();
+                Box::new(DirectLight::new(gpu, shaders, &all, settings.light_size, textured)?)
+            },
         };
         all.push(("shadow", path.shadow().into()));
         all.extend(path.resources());

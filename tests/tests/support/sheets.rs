@@ -6,7 +6,7 @@ use crate::gpu::{gpu, shaders};
 use airlight::core::{Transfer, TransferPoint};
 use airlight::data::Volume;
 
-use airlight::splatting::{SheetFrame, SheetPicture, SheetSettings, Splats};
+use airlight::splatting::{SheetFrame, SheetInputs, SheetPicture, SheetSettings, Splats};
 use glam::{Mat4, Vec3};
 
 /// Opacity is the value; the colour goes straight from that of value 0 to that of value 1.
@@ -59,9 +59,17 @@ impl Shot {
 
 /// A picture of the camera's size.
 pub fn shoot(splats: &Splats, transfer: &Transfer, settings: SheetSettings, frame: &SheetFrame) -> Shot {
+    shoot_all(
+        SheetInputs { splats: std::slice::from_ref(splats), transfer, light_texture: None },
+        settings,
+        frame,
+    )
+}
+
+/// The same of several volumes, through a light texture.
+pub fn shoot_all(inputs: SheetInputs<'_>, settings: SheetSettings, frame: &SheetFrame) -> Shot {
     let size = [frame.camera.viewport.x as u32, frame.camera.viewport.y as u32];
-    let picture =
-        SheetPicture::new(gpu(), shaders(), std::slice::from_ref(splats), transfer, settings, size).unwrap();
+    let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, size).unwrap();
     picture.set(gpu(), frame).unwrap();
     let mut encoder = gpu().encoder();
     picture.record(gpu(), &mut encoder).unwrap();

@@ -3,6 +3,7 @@
 // source: Zhang and Crawfis, 4.1 steps 6 and 21, Eq. 5 without scattering.
 // note: Dispatch begin_light over the shadow buffer, then light_sheet_left for each sheet, indirectly, after its picture; a sheet
 // note: without splats runs nothing. What is left adds up in 32 bits, whatever blending rounds; the texture is for filtered reads.
+// definition LIGHT_TEXTURE: a texture colours the light.
 // binding light_camera: the light as a camera.
 // binding light: the light.
 // binding sheets: the sheets.
@@ -12,9 +13,13 @@
 // binding linear_sampler: linear, clamped to the edge.
 // binding left: what is left of the light, linear RGB, a vector a texel of the shadow buffer, row after row.
 // binding shadow: out, the same.
+// binding light_texture: linear RGB 0..1 over the whole shadow buffer, any float format that filters; with LIGHT_TEXTURE only.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
 #import airlight::core::light::Light
+#ifdef LIGHT_TEXTURE
+#import airlight::core::light::{shadow_point, light_texture_color}
+#endif
 #import airlight::splatting::sheets::{Sheets, metres_in_sheet, sheet_mean}
 #import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter}
 
@@ -27,6 +32,9 @@
 @group(#{GROUP}) @binding(6) var linear_sampler: sampler;
 @group(#{GROUP}) @binding(7) var<storage, read_write> left: array<vec4<f32>>;
 @group(#{GROUP}) @binding(8) var shadow: texture_storage_2d<rgba16float, write>;
+#ifdef LIGHT_TEXTURE
+@group(#{GROUP}) @binding(9) var light_texture: texture_2d<f32>;
+#endif
 
 /// Keeps what is left of the light at a texel.
 fn keep(texel: vec2<u32>, light_left: vec4<f32>) {
@@ -39,9 +47,17 @@ fn keep(texel: vec2<u32>, light_left: vec4<f32>) {
 
 @compute @workgroup_size(16, 8)
 fn begin_light(@builtin(global_invocation_id) id: vec3<u32>) {
-    if all(id.xy < textureDimensions(shadow)) {
-        keep(id.xy, vec4<f32>(max(light.radiance, vec3<f32>(0.0)), 1.0));
+    let size = textureDimensions(shadow);
+    if any(id.xy >= size) {
+        return;
     }
+    var color = vec3<f32>(1.0);
+#ifdef LIGHT_TEXTURE
+    // Any depth serves.
+    let point = shadow_point(light, vec2<f32>(size), vec2<f32>(id.xy) + 0.5, 0.5);
+    color = light_texture_color(light, light_texture, linear_sampler, point);
+#endif
+    keep(id.xy, vec4<f32>(color * max(light.radiance, vec3<f32>(0.0)), 1.0));
 }
 
 @compute @workgroup_size(16, 8)
