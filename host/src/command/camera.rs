@@ -113,7 +113,10 @@ mod tests {
                 let camera = Camera::new(&flags.view(&subject, [40, 30]), [40, 30]).unwrap();
                 for corner in corners {
                     let seen = camera.clip_from_world.project_point3(corner);
-                    assert!(seen.x.abs() < 1.0 && seen.y.abs() < 1.0 && (0.0..1.0).contains(&seen.z), "{seen}");
+                    assert!(
+                        seen.x.abs() < 1.0 && seen.y.abs() < 1.0 && (0.0..1.0).contains(&seen.z),
+                        "{seen}"
+                    );
                 }
             }
         }

@@ -16,7 +16,8 @@ pub fn cloud_bank(size: [u32; 3], seed: u64) -> Volume {
     let mut random = Random::new(seed);
     let clouds: Vec<(Vec3, Vec3)> = (0..CLOUDS)
         .map(|_| {
-            let middle = Vec3::new(random.range(-6.6, 6.6), random.range(-1.0, -0.7), random.range(-6.6, 6.6));
+            let middle =
+                Vec3::new(random.range(-6.6, 6.6), random.range(-1.0, -0.7), random.range(-6.6, 6.6));
             // Lower towards the edge of the bank.
             let edge = middle.with_y(0.0).length() / 9.4;
             let height = random.range(0.8, 2.1) * (1.0 - 0.6 * edge * edge);

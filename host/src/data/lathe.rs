@@ -31,8 +31,10 @@ pub fn lathe(profile: &[Vec2], segments: u32) -> Mesh {
         let shared = |other: Option<&Vec2>| {
             other.filter(|other| other.dot(*own) > CREASE).map_or(*own, |other| (*own + *other).normalize())
         };
-        let normals =
-            [shared(index.checked_sub(1).and_then(|before| outwards.get(before))), shared(outwards.get(index + 1))];
+        let normals = [
+            shared(index.checked_sub(1).and_then(|before| outwards.get(before))),
+            shared(outwards.get(index + 1)),
+        ];
         let first = mesh.positions.len() as u32;
         for step in 0..=segments {
             let (sine, cosine) = (TAU * (step % segments) as f32 / segments as f32).sin_cos();
@@ -89,11 +91,14 @@ pub fn tube(path: &[(Vec3, f32)], segments: u32) -> Mesh {
     for (index, (place, radius)) in path.iter().enumerate() {
         let forward = along(index);
         // The ring turns as little as it can from one place to the next.
-        right = (right - forward * right.dot(forward)).try_normalize().unwrap_or(forward.any_orthonormal_vector());
+        right = (right - forward * right.dot(forward))
+            .try_normalize()
+            .unwrap_or(forward.any_orthonormal_vector());
         let up = forward.cross(right);
         let lids = [(index == 0).then_some(-forward), (index == last).then_some(forward)];
         let rings = [lids[0], None, lids[1]];
-        for (which, lid) in rings.into_iter().enumerate().filter(|(which, lid)| *which == 1 || lid.is_some()) {
+        for (which, lid) in rings.into_iter().enumerate().filter(|(which, lid)| *which == 1 || lid.is_some())
+        {
             let first = mesh.positions.len() as u32;
             for step in 0..segments {
                 let (sine, cosine) = (TAU * step as f32 / segments as f32).sin_cos();
@@ -157,8 +162,10 @@ pub(super) mod tests {
         let expected = std::f32::consts::PI * 0.25 * (1.0 + 1.0 / 3.0);
         assert!((volume / expected - 1.0).abs() < 2e-3, "{volume} {expected}");
         // A ball: all its normals leave the middle.
-        let half: Vec<Vec2> =
-            (0..=32).map(|i| (TAU * 0.5 * i as f32 / 32.0).sin_cos()).map(|(s, c)| Vec2::new(s, -c)).collect();
+        let half: Vec<Vec2> = (0..=32)
+            .map(|i| (TAU * 0.5 * i as f32 / 32.0).sin_cos())
+            .map(|(s, c)| Vec2::new(s, -c))
+            .collect();
         let ball = lathe(&half, 64);
         assert!((closed(&ball) / (2.0 / 3.0 * TAU) - 1.0).abs() < 0.01);
         for (place, normal) in ball.positions.iter().zip(&ball.normals) {

@@ -99,8 +99,9 @@ impl Volume {
     pub fn occupied_voxels(&self, threshold: f32) -> Option<[Vec3; 2]> {
         let [width, height, _] = self.size.map(|side| side as usize);
         let exceeding = self.values.iter().enumerate().filter(|(_, value)| **value > threshold);
-        let voxels = exceeding
-            .map(|(i, _)| Vec3::from([i % width, i / width % height, i / width / height].map(|at| at as f32)));
+        let voxels = exceeding.map(|(i, _)| {
+            Vec3::from([i % width, i / width % height, i / width / height].map(|at| at as f32))
+        });
         Bounds::of(voxels).map(|Bounds { min, max }| [min, max])
     }
 

@@ -36,7 +36,9 @@ pub enum SplattingError {
         picture: [u32; 2],
     },
     /// A light in the midst of what it shines on.
-    #[error("the light at {0} is inside the volumes' box: light has to meet the first sheet first; move it out")]
+    #[error(
+        "the light at {0} is inside the volumes' box: light has to meet the first sheet first; move it out"
+    )]
     LightInside(Vec3),
     /// A light that would have to shine into more than a frustum.
     #[error(

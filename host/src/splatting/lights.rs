@@ -62,7 +62,8 @@ pub fn light_around(lighting: &Lighting, points: &[Vec3]) -> Result<Light, Splat
                 DVec4::Z,
                 DVec4::new(-middle.x / half.x, -middle.y / half.y, 0.0, 1.0),
             );
-            let whole = directx::perspective(0.5 * std::f64::consts::PI, 1.0, f64::from(near), f64::from(far));
+            let whole =
+                directx::perspective(0.5 * std::f64::consts::PI, 1.0, f64::from(near), f64::from(far));
             let clip_from_world = part * whole * view;
             light.clip_from_world = clip_from_world.as_mat4();
             light.world_from_clip = clip_from_world.inverse().as_mat4();
@@ -76,8 +77,9 @@ fn check_outside(position: Vec3, points: &[Vec3]) -> Result<(), SplattingError> 
     if points.iter().any(|point| !point.is_finite()) {
         return Err(LightError::Points.into());
     }
-    let (low, high) =
-        points.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), point| (l.min(*point), h.max(*point)));
+    let (low, high) = points
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), point| (l.min(*point), h.max(*point)));
     if low.cmple(position).all() && position.cmple(high).all() {
         return Err(SplattingError::LightInside(position));
     }
@@ -151,7 +153,8 @@ mod tests {
             let again = light.clip_from_world.project_point3(back);
             assert!(again.distance(Vec3::new(0.3, -0.6, 0.5)) < 1e-3, "{again}");
             // All rays leave the light.
-            let [near, far] = [0.0, 1.0].map(|z| light.world_from_clip.project_point3(Vec3::new(0.5, 0.5, z)));
+            let [near, far] =
+                [0.0, 1.0].map(|z| light.world_from_clip.project_point3(Vec3::new(0.5, 0.5, z)));
             let [near, far] = [near, far].map(|place| (place - position).normalize());
             assert!(near.dot(far) > 0.9999 && light.kind == POINT, "{near} {far}");
         }
@@ -200,7 +203,8 @@ mod tests {
             let edge = Vec3::new(6.0 * degrees.to_radians().tan(), 0.0, 0.0);
             let seen = light.clip_from_world.project_point3(edge).truncate().abs().max_element();
             assert!((seen * 1.02 - 1.0).abs() < 1e-3 && light.kind == SPOT, "{seen}");
-            let depths = [5.0, 7.0].map(|y| light.clip_from_world.project_point3(Vec3::new(0.0, 6.0 - y, 0.0)).z);
+            let depths =
+                [5.0, 7.0].map(|y| light.clip_from_world.project_point3(Vec3::new(0.0, 6.0 - y, 0.0)).z);
             assert!(depths[0] > 0.0 && depths[0] < 0.1 && depths[1] < 1.0 && depths[1] > 0.9, "{depths:?}");
         }
         let sun = Lighting::directional(Vec3::new(1.0, 2.0, 0.5), Vec3::ONE);

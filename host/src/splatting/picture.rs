@@ -7,7 +7,8 @@ use super::means::Means;
 use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
 use super::{
-    LightTransport, SheetFrame, SheetInputs, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
+    LightTransport, SheetFrame, SheetInputs, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats,
+    SplattingError,
 };
 use crate::core::{Camera, Light};
 use crate::gpu::Gpu;
@@ -111,7 +112,7 @@ impl<'a> SheetPicture<'a> {
             LightTransport::Direct => {
                 let textured = light_texture.is_some();
                 Box::new(DirectLight::new(gpu, shaders, &all, settings.light_size, textured)?)
-            },
+            }
         };
         all.push(("shadow", path.shadow().into()));
         all.extend(path.resources());

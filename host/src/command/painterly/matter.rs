@@ -4,8 +4,8 @@
 use super::flags::Options;
 use super::shrink::shrunk;
 use crate::command::CommandError;
-use crate::command::volumes::load;
 use crate::command::transfers::transfer;
+use crate::command::volumes::load;
 use crate::core::{TransferFunction, TransferPoint};
 use crate::data::{Bounds, Volume, value_range};
 use glam::{Mat4, Vec3};

@@ -151,7 +151,9 @@ pub fn light(text: &str) -> Result<LightSpelling, String> {
             [azimuth, elevation, extent] => {
                 check_elevation(elevation)?;
                 if !(0.0..=60.0).contains(&extent) || extent == 0.0 {
-                    return Err(format!("{extent} degrees across are impossible: above 0 to 60 are possible"));
+                    return Err(format!(
+                        "{extent} degrees across are impossible: above 0 to 60 are possible"
+                    ));
                 }
                 Ok(LightSpelling::Area { middle: AreaMiddle::Directional { azimuth, elevation }, extent })
             }

@@ -5,7 +5,7 @@ mod light;
 mod placed;
 mod view;
 
-pub use light::{AreaMiddle, LightSpelling, NO_AREA, light};
+pub use light::{LightSpelling, NO_AREA, light};
 pub use placed::{Placed, placed};
 pub use view::{DepthSpelling, Projection, cascades, samples};
 

@@ -60,7 +60,9 @@ impl Framing {
         Ok(Self {
             cameras: views.iter().map(camera).collect::<Result<_, _>>()?,
             views,
-            light: flags.light.lighting(flags.radiance.unwrap_or_else(|| flags.light.radiance_as(RADIANCE, bounds))),
+            light: flags
+                .light
+                .lighting(flags.radiance.unwrap_or_else(|| flags.light.radiance_as(RADIANCE, bounds))),
             medium: Medium::new(extinction, Vec3::splat(flags.albedo), flags.g, limit)?,
         })
     }

@@ -70,7 +70,8 @@ impl Framing {
     /// Misuse: values that no camera can have.
     pub fn camera(&self, flags: &Options, frame: u32) -> Result<Camera, CommandError> {
         let turn = flags.turned(frame);
-        let subject = Subject { center: self.center, points: &self.points, ball: self.ball, from: FROM, turn };
+        let subject =
+            Subject { center: self.center, points: &self.points, ball: self.ball, from: FROM, turn };
         let view = flags.view.view(&subject, flags.size);
         Ok(Camera::new(&view, flags.size).map_err(StageError::Camera)?)
     }

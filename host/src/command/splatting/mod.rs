@@ -38,7 +38,8 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
     let framing = Framing::new(options, &volumes)?;
     // What no camera can have is said before there is a device.
     framing.camera(options, frames.first)?;
-    let settings = SheetSettings { transport: transport::transport(options)?, ..options.settings() };
+    let settings =
+        SheetSettings { transport: transport::transport(options, &volumes)?, ..options.settings() };
     bar.inc(1);
 
     bar.set_message("finding splats");

@@ -2,6 +2,7 @@
 //! How light goes from sheet to sheet: flags, and what cannot be meant.
 
 use super::flags::Options;
+use super::volumes::Volumes;
 use crate::command::CommandError;
 use crate::command::parse::{self, LightSpelling};
 use crate::splatting::LightTransport;
@@ -74,9 +75,14 @@ impl TransportFlags {
 ///
 /// # Errors
 /// A failure: what is not there yet.
-pub fn transport(flags: &Options) -> Result<LightTransport, CommandError> {
+pub fn transport(flags: &Options, volumes: &Volumes) -> Result<LightTransport, CommandError> {
     let TransportFlags { forward, back, soft, .. } = flags.transport;
-    let asked = [(!flags.mesh.is_empty(), "--mesh"), (forward, "--forward"), (back, "--back"), (soft, "--soft")];
+    let asked = [
+        (!volumes.mesh.indices.is_empty(), "--mesh"),
+        (forward, "--forward"),
+        (back, "--back"),
+        (soft, "--soft"),
+    ];
     match asked.into_iter().find(|(given, _)| *given) {
         Some((_, flag)) => Err(CommandError::failure(format!("{flag}: it is not there yet: leave it out"))),
         None => Ok(LightTransport::Direct),

@@ -9,8 +9,7 @@ use crate::core::{Camera, DepthRange, Jitter, PerspectiveView, TRANSFERS, Transf
 use crate::data::Volume;
 use crate::painterly::{
     Brushes, Canvas, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, PainterlyStyle,
-    Painting, PaintingFrame, PaintingSettings, STYLES, Stroke, StrokeSettings, SurfaceLighting,
-    parse_style,
+    Painting, PaintingFrame, PaintingSettings, STYLES, Stroke, StrokeSettings, SurfaceLighting, parse_style,
 };
 use glam::Vec3;
 
