@@ -84,11 +84,14 @@ fn light_of_a_point_falls_off_with_the_square_of_the_distance() {
     let volume = metres([22, 6, 6], |place| 1e-3 * (ball(place, -8.0) + ball(place, 8.0)));
     let splats = [splats(&volume)];
     let corners: Vec<Vec3> =
-        airlight::data::Bounds { min: volume.bounds().min - 2.0, max: volume.bounds().max + 2.0 }.corners().into();
+        airlight::data::Bounds { min: volume.bounds().min - 2.0, max: volume.bounds().max + 2.0 }
+            .corners()
+            .into();
     let lighting = airlight::Lighting::Point { position, intensity: Vec3::splat(500.0), radius: 0.01 };
     let light = light_around(&lighting, &corners).unwrap();
     let transfer = colored([Vec3::ONE; 2]);
-    let frame = SheetFrame { camera: parallel(Vec3::NEG_Z, 24.0, 96), light, lighting: SheetLighting::new(10.0) };
+    let frame =
+        SheetFrame { camera: parallel(Vec3::NEG_Z, 24.0, 96), light, lighting: SheetLighting::new(10.0) };
     let settings = SheetSettings { light_size: [128; 2], ..few(64) };
     let inputs = SheetInputs { splats: &splats, transfer: &transfer, light_texture: None };
     let shot = sheets::shoot_all(inputs, settings, &frame);

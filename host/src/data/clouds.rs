@@ -6,7 +6,7 @@ use super::volume::{Volume, filled};
 use glam::Vec3;
 
 /// Ellipsoids in a bank.
-const CLOUDS: usize = 26;
+const CLOUDS: usize = 44;
 
 /// A bank of low clouds of 16 x 4 x 16 m about the origin, seen from above or below: ellipsoids side by side, flat at their feet, their
 /// surfaces disturbed by noise. After Gardner, "Visual simulation of clouds" (1985), and Ebert's hypertextures; a single such ellipsoid
@@ -51,7 +51,7 @@ fn smooth_greatest(a: f32, b: f32, width: f32) -> f32 {
 }
 
 /// Smoke that fills a room of 4 x 3 x 4 m on the ground, in sheets and folds: Perlin's turbulence (Perlin and Hoffert, "Hypertexture",
-/// 1989) bends layers of soot, thinner towards the ceiling. Extinction 0 to 1.5 1/m.
+/// 1989) bends layers of soot, thinner towards the ceiling. Extinction 0 to 1.2 1/m.
 pub fn smoke(size: [u32; 3], seed: u64) -> Volume {
     let (min, max) = (Vec3::new(-2.0, 0.0, -2.0), Vec3::new(2.0, 3.0, 2.0));
     filled(size, min, max, |unit| {
@@ -60,8 +60,8 @@ pub fn smoke(size: [u32; 3], seed: u64) -> Volume {
         let bent = at + 0.9 * Vec3::new(fold(3), fold(17), fold(31));
         let layers = 0.5 + 0.5 * (2.6 * bent.y + 1.1 * bent.x).sin();
         let wisps = turbulence(seed.wrapping_add(101), 1.3 * bent, 4);
-        let dense = (0.25 + 0.75 * layers * layers) * (1.35 - wisps).clamp(0.0, 1.0);
-        1.5 * dense.clamp(0.0, 1.0) * (1.0 - 0.55 * unit.y)
+        let dense = (0.06 + 0.94 * layers * layers * layers) * (1.5 - 1.6 * wisps).clamp(0.0, 1.0);
+        1.2 * dense.clamp(0.0, 1.0) * (1.0 - 0.55 * unit.y)
     })
 }
 
@@ -72,8 +72,8 @@ mod tests {
     #[test]
     fn they_repeat_and_stay_within_their_extinction() {
         for (make, size, most, share) in [
-            (cloud_bank as fn([u32; 3], u64) -> Volume, [48, 12, 48], 3.0, 0.1..0.7),
-            (smoke, [24, 18, 24], 1.5, 0.7..1.0),
+            (cloud_bank as fn([u32; 3], u64) -> Volume, [48, 12, 48], 3.0, 0.1..=0.7),
+            (smoke, [24, 18, 24], 1.2, 0.5..=1.0),
         ] {
             let volume = make(size, 5);
             assert_eq!(volume, make(size, 5));
@@ -99,10 +99,10 @@ mod tests {
         let clear = columns.iter().filter(|value| **value < 0.01).count();
         let thick = columns.iter().filter(|value| **value > 0.5).count();
         println!("{clear} clear, {thick} thick of {}", columns.len());
-        assert!(clear > 60 && thick > 900, "{clear} {thick}");
+        assert!(clear > 30 && thick > 900, "{clear} {thick}");
         let smoke = smoke([32, 24, 32], 1);
         for (x, z) in [(1, 1), (16, 16), (30, 5), (7, 28)] {
-            assert!(column(&smoke, x, z) > 0.1);
+            assert!(column(&smoke, x, z) > 0.05);
         }
     }
 }

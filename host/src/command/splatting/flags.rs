@@ -61,7 +61,7 @@ pub struct Options {
     #[arg(long, value_name = "G", value_parser = parse::number, allow_hyphen_values = true)]
     pub g: Option<f32>,
     /// Linear RGB radiance from all around, one number or R,G,B, 0 to 1e4.
-    #[arg(long, value_name = "A|R,G,B", default_value = "0.12,0.16,0.24", value_parser = parse::grey_or_colour, allow_hyphen_values = true)]
+    #[arg(long, value_name = "A|R,G,B", default_value = "0.06,0.08,0.12", value_parser = parse::grey_or_colour, allow_hyphen_values = true)]
     pub ambient: Vec3,
     /// Sheets, 1 to 4096.
     #[arg(long, value_name = "N", default_value = "128", value_parser = clap::value_parser!(u32).range(1..=4096), allow_hyphen_values = true)]
@@ -74,7 +74,7 @@ pub struct Options {
     #[arg(long, value_name = "LIGHT", default_value = "directional:70,40", value_parser = parse::light)]
     pub light: LightSpelling,
     /// Linear RGB irradiance of a surface that faces the light, at one metre from a light at a point, 0 to 60000 [default:
-    /// 26,23,19, of surfaces (--shading phong) a third; of a light at a point as much in the middle of the volumes].
+    /// 16,14.2,11.7, of surfaces (--shading phong) half of it; of a light at a point as much in the middle of the volumes].
     #[arg(long, value_name = "R,G,B", value_parser = parse::vector, allow_hyphen_values = true)]
     pub radiance: Option<Vec3>,
     /// Picture that colours the light, .png or .exr, over the whole shadow buffer.

@@ -14,9 +14,9 @@ use glam::Vec3;
 /// From the middle to the eye.
 const FROM: Vec3 = Vec3::new(-0.4, 0.1, 1.0);
 /// What a directional light gives a surface that faces it.
-const RADIANCE: Vec3 = Vec3::new(26.0, 23.0, 19.0);
+const RADIANCE: Vec3 = Vec3::new(16.0, 14.2, 11.7);
 /// The same, of what reflects like surfaces do.
-const RADIANCE_OF_SURFACES: Vec3 = Vec3::new(8.7, 7.7, 6.3);
+const RADIANCE_OF_SURFACES: Vec3 = Vec3::new(8.0, 7.1, 5.9);
 /// Most radiant intensity: that of half floats, less what rounding adds.
 const MOST_INTENSITY: f32 = 60_000.0;
 /// Mean cosine of the phase function.

@@ -106,7 +106,9 @@ impl Volumes {
     ) -> Self {
         let ranges = list.iter().map(|volume| value_range(&volume.values));
         let [low, high] = transfer.range.unwrap_or_else(|| {
-            ranges.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [l, h]| [low.min(l), high.max(h)])
+            // Of those that are made opacity is to be the share of the extinction.
+            let none = if made { 0.0 } else { f32::INFINITY };
+            ranges.fold([none, f32::NEG_INFINITY], |[low, high], [l, h]| [low.min(l), high.max(h)])
         });
         let share = |value: f32| {
             let share = (f64::from(value) - f64::from(low)) / (f64::from(high) - f64::from(low));
