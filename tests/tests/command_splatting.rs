@@ -120,7 +120,7 @@ fn scans_are_seen() {
     let at = folder();
     let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../host/assets");
     for (file, transfer, dense) in
-        [("head_mri", "head", 150..1200), ("stent_ct", "stent", 100..1200), ("stent_ct", "vessels", 50..1300)]
+        [("head_mri", "head", 150..1200), ("stent_ct", "stent", 60..1200), ("stent_ct", "vessels", 50..1300)]
     {
         let flags = format!("--volume {assets}/{file}.nii.gz --transfer {transfer} --shading phong");
         let run = Run::new(at.path(), &flags);
@@ -318,7 +318,7 @@ fn awkward_sizes_draw() {
         "--volume smoke --voxels 4 --size 1x3 --eye 0,1,0 --target 0,1,-1 --light directional:0,90",
         "--volume cloud --voxels 6 --size 5x1 --eye 0,9,0 --target 0,0,0.001 --light directional:0,90",
         "--volume cloud --voxels 6 --size 5x4 --eye 0,0,9 --target 0,0,0 --light directional:180,0",
-        "--volume cloud --voxels 6 --size 5x4 --light point:0,3.5,0",
+        "--volume cloud --voxels 6 --size 5x4 --light point:0,6,0",
     ] {
         succeeds(at.path(), &words(&format!("splatting --out x.exr {flags}")));
         let picture = image::open(at.path().join("x.exr")).unwrap().into_rgba32f();

@@ -113,7 +113,7 @@ fn lights_in_the_midst_of_the_volumes_are_refused() {
     let bad = |flags: &str, parts: &[&str]| refused(at.path(), &format!("{CLOUD} {flags}"), 2, parts);
     bad("--light point:0,0,0", &["--light", "inside the volumes' box"]);
     bad("--light spot:1,0.5,0,0,9,0,20", &["--light", "inside the volumes' box"]);
-    bad("--light point:0,2.2,0", &["--light", "too near"]);
+    bad("--light point:0,2.9,0", &["--light", "too near"]);
     bad("--volume cloud@9,0,0 --light point:4.5,0,0", &["--light", "inside the volumes' box"]);
     bad("--light point:0,6,0 --radiance 7e4,0,0", &["--radiance"]);
 }
