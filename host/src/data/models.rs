@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn models_are_closed_face_outwards_and_have_their_size() {
         for (name, mesh, size, base) in [
-            ("mushrooms", mushrooms(), Vec3::new(1.6, 1.0, 1.6), true),
+            ("mushrooms", mushrooms(), Vec3::new(1.9, 1.0, 1.6), true),
             ("aeroplane", aeroplane(), Vec3::new(9.0, 2.6, 7.3), false),
             ("desk", desk(), Vec3::new(1.4, 1.17, 1.36), true),
             ("dart", dart(), Vec3::new(0.22, 0.22, 1.0), false),
@@ -278,7 +278,7 @@ mod tests {
             assert!(ratio.min_element() > 0.85 && ratio.max_element() < 1.15, "{name}: {}", bounds.size());
             let low = bounds.min.y;
             assert!(if base { low.abs() < 0.08 } else { low < -0.05 }, "{name}: {low}");
-            assert!((500..40_000).contains(&mesh.triangle_count()), "{name}");
+            assert!((500..50_000).contains(&mesh.triangle_count()), "{name}");
         }
     }
 }
