@@ -140,8 +140,9 @@ pub(super) mod tests {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[triangle[i] as usize]);
             volume += a.dot(b.cross(c)) / 6.0;
             let normals: Vec3 = triangle.iter().map(|i| mesh.normals[*i as usize]).sum();
+            // At poles triangles have no area but what rounding gives them.
             let face = (b - a).cross(c - a);
-            assert!(face.dot(normals) >= -1e-3 * face.length(), "{a} {b} {c}: {face} {normals}");
+            assert!(face.dot(normals) >= -1e-3 * face.length() - 1e-7, "{a} {b} {c}: {face} {normals}");
             for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (key(triangle[i]), key(triangle[j]))) {
                 if from != to {
                     *edges.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
