@@ -4,7 +4,7 @@
 //! [`Gpu`] opens a device on WebGPU's default limits. [`Shaders`] composes modules and passes.
 //! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
 //! of plain functions that record passes into an encoder: [`painterly`], [`scattering`],
-//! [`stylize`], [`transmittance`].
+//! [`splatting`], [`stylize`], [`transmittance`].
 
 #[cfg(feature = "command")]
 pub mod command;
@@ -31,4 +31,4 @@ pub use gpu::{Gpu, GpuError};
 pub use pass::{Bound, Pass, PassError, RenderStages, Resource};
 pub use resource::{Buffer, Sampler, Texture};
 pub use shaders::Shaders;
-pub use stage::{Lighting, PartShadows, Setting, Stage, StageError};
+pub use stage::{Lighting, PartShadows, Setting, Stage, StageError, light_texture};

@@ -212,7 +212,7 @@ impl Stage {
         let light_texture = match (setting.light_texture, setting.light) {
             (None, _) => None,
             (Some(_), Lighting::Point { .. }) => return Err(LightError::TextureOfPoint.into()),
-            (Some(image), _) => Some(upload(gpu, image)?),
+            (Some(image), _) => Some(self::light_texture(gpu, image)?),
         };
         let meshes = [MeshBuffers::new(gpu, setting.mesh)];
         let pictures = raster.draw(
@@ -280,7 +280,11 @@ impl Stage {
     }
 }
 
-fn upload(gpu: &Gpu, image: &LightImage) -> Result<Texture, StageError> {
+/// A light texture as passes take it.
+///
+/// # Errors
+/// [`StageError::Size`] beyond the device's limit.
+pub fn light_texture(gpu: &Gpu, image: &LightImage) -> Result<Texture, StageError> {
     check_size(gpu, "a light texture", image.size())?;
     let usage = wgpu::TextureUsages::TEXTURE_BINDING;
     let texture = Texture::new(gpu, image.size(), wgpu::TextureFormat::Rgba16Float, usage);

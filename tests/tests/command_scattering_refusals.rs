@@ -27,7 +27,11 @@ fn flags_that_cannot_be_meant_are_refused() {
     let bad = |flags: &str, parts: &[&str]| refused(flags, 2, parts);
     // Values.
     bad("--light spot:0,1,0,0,0,0,90", &["--light", "80"]);
-    bad("--light area:1", &["--light", "not there yet"]);
+    bad("--light area:1", &["--light", "`area:1`", "area:135,40,5"]);
+    for area in ["area:10,20,3", "area:0,5,0,1"] {
+        bad(&format!("--light {area}"), &["--light", "`area`", "airlight splatting"]);
+    }
+    bad("--light environment:a.exr", &["--light", "not there yet"]);
     for count in ["0", "7", "many", "-1"] {
         bad(&format!("--cascades={count}"), &["--cascades", count]);
     }

@@ -38,8 +38,8 @@ fn transmitted(volume: &Volume, camera: Camera, light: Light, extinction: f32, c
     let splats = Splats::new(gpu(), shaders(), volume, 0.0, None).unwrap();
     let settings = SheetSettings { count, light_size: [64; 2], ..SheetSettings::default() };
     let size = [camera.viewport.x as u32, camera.viewport.y as u32];
-    let transfer = straight();
-    let inputs = SheetInputs { splats: std::slice::from_ref(&splats), transfer: &transfer, surfaces: None };
+    let (splats, transfer) = (std::slice::from_ref(&splats), straight());
+    let inputs = SheetInputs::new(splats, &transfer);
     let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, size).unwrap();
     let lighting = SheetLighting::new(2.0 * extinction);
     picture.set(gpu(), &SheetFrame { camera, light, lighting }).unwrap();

@@ -13,7 +13,8 @@ mod sheets;
 use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView};
 use airlight::data::{Volume, cloud};
 use airlight::splatting::{
-    Shading, SheetFrame, SheetInputs, SheetLighting, SheetSettings, Splats, SplattingError,
+    Shading, SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings, Splats, SplattingError,
+    light_around,
 };
 use glam::Vec3;
 use gpu::{gpu, shaders};
@@ -79,6 +80,63 @@ fn footprints_of_a_constant_volume_add_up_to_a_constant() {
     }
     println!("optical depth of pixels and of texels of the shadow buffer from that of the slab: {worst:.5?}");
     assert!(worst.iter().all(|worst| *worst < 0.01), "{worst:?}");
+}
+
+/// Two thin clouds of one kind: what comes from them is as the inverse squares of their distances from a point light.
+#[test]
+fn light_of_a_point_falls_off_with_the_square_of_the_distance() {
+    let _turn = gpu::turn();
+    let position = Vec3::new(-16.0, 0.0, 0.0);
+    // Balls of a metre and a half, 8 and 24 m from the light.
+    let ball = |place: Vec3, x: f32| f32::from((place - Vec3::new(x, 0.0, 0.0)).length() < 1.6);
+    let volume = metres([22, 6, 6], |place| 1e-3 * (ball(place, -8.0) + ball(place, 8.0)));
+    let splats = [splats(&volume)];
+    let corners: Vec<Vec3> =
+        airlight::data::Bounds { min: volume.bounds().min - 2.0, max: volume.bounds().max + 2.0 }
+            .corners()
+            .into();
+    let lighting = airlight::Lighting::Point { position, intensity: Vec3::splat(500.0), radius: 0.01 };
+    let light = light_around(&lighting, &corners).unwrap();
+    let transfer = colored([Vec3::ONE; 2]);
+    let frame =
+        SheetFrame { camera: parallel(Vec3::NEG_Z, 24.0, 96), light, lighting: SheetLighting::new(10.0) };
+    let settings = SheetSettings { light_size: [128; 2], ..few(64) };
+    let inputs = SheetInputs::new(&splats, &transfer);
+    let shot = sheets::shoot_all(inputs, settings, &frame);
+    let side = |far: bool| -> f64 {
+        let pixels = shot.picture.chunks_exact(4).enumerate();
+        pixels.filter(|(index, _)| (index % 96 >= 48) == far).map(|(_, pixel)| f64::from(pixel[0])).sum()
+    };
+    // The mean of 1 / d^2 over a ball of radius R and a Gaussian of variance V is (1 + R^2 / (5 d^2) + V / d^2) / d^2.
+    let mean = |d: f64| (1.0 + (1.6_f64.powi(2) / 5.0 + 0.49) / (d * d)) / (d * d);
+    let expected = mean(8.0) / mean(24.0);
+    let ratio = side(false) / side(true);
+    println!("{ratio} of {expected}");
+    assert!((ratio / expected - 1.0).abs() < 0.02, "{ratio}");
+}
+
+/// Over the whole shadow buffer, row for row.
+#[test]
+fn light_textures_lie_over_the_shadow_buffer() {
+    let _turn = gpu::turn();
+    let (volume, frame) = cloud_frame(60.0);
+    let none = [Splats::new(gpu(), shaders(), &volume, 10.0, None).unwrap()];
+    let transfer = colored([Vec3::ONE; 2]);
+    let image = airlight::data::LightImage::from_function([32, 32], |at| Vec3::new(at.x, at.y, 0.25));
+    let texture = airlight::light_texture(gpu(), &image).unwrap();
+    let position = Vec3::new(0.4, 0.5, 9.0);
+    let local = airlight::Lighting::Point { position, intensity: frame.light.radiance, radius: 0.1 };
+    let local = light_around(&local, &volume.bounds().corners()).unwrap();
+    for light in [frame.light, local] {
+        let inputs = SheetInputs { light_texture: Some(&texture), ..SheetInputs::new(&none, &transfer) };
+        let shot = sheets::shoot_all(inputs, few(4), &SheetFrame { light, ..frame });
+        for (index, texel) in shot.shadow.chunks_exact(4).enumerate() {
+            let [x, y] = [index % 32, index / 32].map(|place| (place as f32 + 0.5) / 32.0);
+            let expected = Vec3::new(x, y, 0.25) * Vec3::new(3.0, 2.0, 1.0);
+            let found = Vec3::from_slice(texel);
+            assert!((found - expected).abs().max_element() < 4e-3, "{index}: {found} {expected}");
+        }
+    }
 }
 
 fn cloud_frame(degrees: f32) -> (Volume, SheetFrame) {
@@ -179,9 +237,8 @@ fn impossible_settings_are_refused() {
     let (volume, frame) = cloud_frame(60.0);
     let splats = splats(&volume);
     let transfer = colored([Vec3::ONE; 2]);
-    let inputs = SheetInputs { splats: std::slice::from_ref(&splats), transfer: &transfer, surfaces: None };
-    let new =
-        |settings, size| airlight::splatting::SheetPicture::new(gpu(), shaders(), inputs, settings, size);
+    let inputs = SheetInputs::new(std::slice::from_ref(&splats), &transfer);
+    let new = |settings, size| SheetPicture::new(gpu(), shaders(), inputs, settings, size);
     for (settings, size) in [
         (few(0), [48, 32]),
         (few(5000), [48, 32]),

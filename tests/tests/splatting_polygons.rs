@@ -82,7 +82,7 @@ fn bounds(volume: &Volume, meshes: &[Mesh]) -> [glam::Vec3; 2] {
 fn picture(volume: &[Splats], meshes: &[Mesh], settings: SheetSettings, frame: &SheetFrame) -> Shot {
     let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));
     let surfaces = Surfaces::new(gpu(), meshes).unwrap();
-    let inputs = SheetInputs { splats: volume, transfer: &transfer, surfaces: Some(&surfaces) };
+    let inputs = SheetInputs { surfaces: Some(&surfaces), ..SheetInputs::new(volume, &transfer) };
     shoot_all(inputs, settings, frame)
 }
 

@@ -235,11 +235,7 @@ fn two_clouds_are_what_a_ray_marcher_makes_of_their_sum() {
             let truth = scene.picture(&reference, SIZE.map(|side| side as usize));
             let frame = SheetFrame { camera, light, lighting: lighting() };
             let settings = SheetSettings { count: 96, light_size: [256; 2], ..SheetSettings::default() };
-            let shot = shoot_all(
-                SheetInputs { splats: &splats, transfer: &transfer, surfaces: None },
-                settings,
-                &frame,
-            );
+            let shot = shoot_all(SheetInputs::new(&splats, &transfer), settings, &frame);
             let [radiance, transmittance] = differences(&shot, truth.iter());
             println!("{name}, {degrees} degrees: radiance {radiance:.5}, transmittance {transmittance:.5}");
             assert!(radiance <= 0.01, "{name}, {degrees}: {radiance}");
@@ -279,8 +275,7 @@ fn a_cloud_in_two_halves_is_the_whole() {
         let frame = SheetFrame { camera, light, lighting: lighting() };
         let settings = SheetSettings { count, light_size: [192; 2], ..SheetSettings::default() };
         let one = shoot(&whole, &transfer, settings, &frame);
-        let two =
-            shoot_all(SheetInputs { splats: &halves, transfer: &transfer, surfaces: None }, settings, &frame);
+        let two = shoot_all(SheetInputs::new(&halves, &transfer), settings, &frame);
         let greatest = one.picture.iter().copied().fold(0.0_f32, f32::max);
         let difference = one.picture.iter().zip(&two.picture).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         println!("{degrees} degrees: at most {:.6} of the greatest value", difference / greatest);

@@ -473,8 +473,7 @@ fn impossible_settings_are_refused() {
     let with = |way: ScatteringSettings, light_size| {
         let settings =
             SheetSettings { light_size, ..settings(LightTransport::Scattering(way), Shading::Scattering) };
-        let inputs =
-            SheetInputs { splats: std::slice::from_ref(&splats), transfer: &transfer, surfaces: None };
+        let inputs = SheetInputs::new(std::slice::from_ref(&splats), &transfer);
         SheetPicture::new(gpu(), shaders(), inputs, settings, [8, 8]).err()
     };
     let possible = ScatteringSettings::default();

@@ -63,7 +63,7 @@ impl<'a> Turn<'a> {
         let transfer = colored([Vec3::ONE; 2]);
         let settings = SheetSettings { count, light_size: [96; 2], ..SheetSettings::default() };
         let splats = std::slice::from_ref(splats);
-        let inputs = SheetInputs { splats, transfer: &transfer, surfaces: None };
+        let inputs = SheetInputs::new(splats, &transfer);
         let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, SIZE).unwrap();
         Self { picture, light: side_light(volume) }
     }

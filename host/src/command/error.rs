@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One sentence to the person at the keyboard, and the exit code that goes with it.
 
-use crate::core::{CameraError, LightError, VolumeTextureError};
+use crate::core::{CameraError, LightError, TransferError, TransferFileError, VolumeTextureError};
 use crate::data::MediumFileError;
 use crate::painterly::{PainterlyError, PaintingError, StrokeError};
 use crate::scattering::ScatteringError;
 use crate::scenes::SceneError;
+use crate::splatting::SplattingError;
 use crate::stylize::StylizeError;
 use crate::transmittance::TransmittanceError;
 use crate::{GpuError, PassError, StageError};
@@ -175,6 +176,42 @@ impl From<TransmittanceError> for CommandError {
     }
 }
 
+impl From<TransferFileError> for CommandError {
+    fn from(error: TransferFileError) -> Self {
+        Self::failure(format!("--transfer: {error}"))
+    }
+}
+
+impl From<TransferError> for CommandError {
+    fn from(error: TransferError) -> Self {
+        Self::failure(format!("--transfer: {error}"))
+    }
+}
+
+impl From<SplattingError> for CommandError {
+    fn from(error: SplattingError) -> Self {
+        use SplattingError as E;
+        let flag = match &error {
+            E::Setting { name: "number of sheets", .. } => "--sheets",
+            E::Setting { name: "side of a picture", .. } => "--size, --light-size",
+            E::Setting { name: "extinction", .. } => "--extinction-scale",
+            E::Setting { name: "ambient radiance", .. } => "--ambient",
+            E::Setting { name: "mean cosine", .. } => "--g",
+            E::Setting { name: "cone of scattered light", .. } => "--cone",
+            E::Setting { name: "free path", .. } => "--free-path",
+            E::Setting { name: "number of sweeps", .. } => "--sweeps",
+            E::Setting { name: "size of the light", .. } => "--light",
+            E::Setting { name: "texels of a soft shadow buffer", .. } | E::LightBuffer { .. } => "--light-size",
+            E::LightInside(_) | E::LightTooNear(_) | E::LightBehind { .. } => "--light",
+            E::NoPolygons => "--mesh",
+            E::Light(error) => return StageError::Light(error.clone()).into(),
+            E::Volume(_) | E::Voxels(_) => return Self::failure(format!("--volume: {error}")),
+            E::Setting { .. } | E::Viewport { .. } | E::Pass(_) => return Self::failure(error),
+        };
+        Self::misuse(flag, error)
+    }
+}
+
 impl From<PaintingError> for CommandError {
     fn from(error: PaintingError) -> Self {
         match error {
@@ -198,7 +235,7 @@ impl From<PainterlyError> for CommandError {
             }
             E::Size { .. } => "--size",
             E::Volume(_) | E::Space => return Self::failure(format!("--volume: {error}")),
-            E::File(_) | E::Transfer { .. } | E::Function(_) | E::Entry { .. } | E::Range(..) => {
+            E::Function(_) | E::Entry { .. } | E::Range(..) => {
                 return Self::failure(format!("--transfer: {error}"));
             }
             E::Setting { .. } | E::Table { .. } | E::NoCurvature | E::Pass(_) => return Self::failure(error),

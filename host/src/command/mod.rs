@@ -2,6 +2,7 @@
 //! The command-line program: parsing, progress, exit codes.
 
 mod bench;
+mod camera;
 mod error;
 mod fit;
 mod gallery;
@@ -14,10 +15,14 @@ mod run;
 mod scans;
 mod scattering;
 mod sequence;
+mod sky;
+mod splatting;
 mod staging;
 mod stylize;
 mod text;
+mod transfers;
 mod transmittance;
+mod volumes;
 
 pub use bench::baselines;
 pub use error::CommandError;
@@ -51,6 +56,8 @@ enum Command {
     Transmittance(Box<transmittance::Options>),
     /// A volume of yours as a painting, frame by frame.
     Painterly(Box<painterly::Options>),
+    /// Volumes and meshes of yours as sheets of splats, lit from sheet to sheet.
+    Splatting(Box<splatting::Options>),
     /// Any compute or full-screen pass on arrays of yours, by binding name.
     Run(run::Options),
     /// Ratios against baselines, interleaved, with the error of both sides.
@@ -71,6 +78,7 @@ pub fn main() -> ExitCode {
         Command::Stylize(options) => stylize::run(&options, quiet),
         Command::Transmittance(options) => transmittance::run(&options, quiet),
         Command::Painterly(options) => painterly::run(&options, quiet),
+        Command::Splatting(options) => splatting::run(&options, quiet),
         Command::Run(options) => run::run(&options),
         Command::Bench(options) => bench::run(&options, quiet),
         Command::List(options) => list::list(&options),

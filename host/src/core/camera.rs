@@ -122,6 +122,14 @@ impl From<OrthographicView> for View {
 }
 
 impl View {
+    /// Distance of the far plane, metres.
+    pub fn far(&self) -> f32 {
+        match self {
+            Self::Perspective(view) => view.far,
+            Self::Orthographic(view) => view.far,
+        }
+    }
+
     /// The perspective view, if it is one.
     pub fn perspective(&self) -> Option<PerspectiveView> {
         match self {

@@ -13,6 +13,8 @@ mod shadow_views;
 mod sort;
 mod tonemap;
 mod transfer;
+#[cfg(feature = "command")]
+mod transfer_file;
 mod volume;
 
 pub use bricks::{BrickThreshold, Bricks, brick_count};
@@ -28,4 +30,6 @@ pub use sort::{Sort, SortParameters};
 pub use tonemap::{Tonemap, TonemapParameters};
 pub(crate) use transfer::entry;
 pub use transfer::{Transfer, TransferError, TransferPoint};
+#[cfg(feature = "command")]
+pub use transfer_file::{TRANSFERS, TransferFileError, TransferFunction, parse_transfer, read_transfer};
 pub use volume::{Reading, VolumeSpace, VolumeTexture, VolumeTextureError};

@@ -5,14 +5,18 @@
 //! deterministic: the same parameters give the same data.
 
 mod blue_noise;
+mod clouds;
 mod fields;
+mod lathe;
 mod light_image;
 #[cfg(feature = "command")]
 mod load;
 mod mesh;
+mod models;
 mod particles;
 mod random;
 mod shapes;
+mod solids;
 #[cfg(feature = "command")]
 mod srgb;
 mod terrain;
@@ -20,7 +24,9 @@ mod tree;
 mod volume;
 
 pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
+pub use clouds::{cloud_bank, smoke};
 pub use fields::{marschner_lobb, quadric_field, sphere_field, torus_field};
+pub use lathe::{lathe, tube};
 #[cfg(feature = "command")]
 pub use light_image::load_light_image;
 pub use light_image::{LightImage, LightImageError};
@@ -30,13 +36,15 @@ pub use load::{
     volume_from_bytes,
 };
 pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};
+pub use models::{aeroplane, dart, desk, mushrooms, teapot};
 pub use particles::{Particle, Particles, burst};
 pub use random::Random;
 pub use shapes::{cuboid, plane, sphere, torus};
+pub use solids::{solid_plate, solid_ring};
 #[cfg(feature = "command")]
 #[cfg(feature = "command")]
 pub(crate) use srgb::srgb_from_linear;
 pub(crate) use srgb::{linear_from_hexadecimal, linear_from_srgb};
 pub use terrain::{TerrainParameters, terrain, terrain_height};
 pub use tree::{TreeParameters, tree};
-pub use volume::{Volume, VolumeError, cloud, plume};
+pub use volume::{Volume, VolumeError, cloud, plume, value_range};

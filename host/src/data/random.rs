@@ -99,6 +99,20 @@ pub(super) fn value_noise_in_space(seed: u64, at: Vec3) -> f32 {
     sum
 }
 
+/// Perlin's turbulence: octaves of the distance of that noise from its middle, each of half the strength and size of the one before, over
+/// their greatest sum; creased where the noise passes through its middle.
+pub(super) fn turbulence(seed: u64, at: Vec3, octaves: u32) -> f32 {
+    let (mut sum, mut most, mut strength, mut scale) = (0.0, 0.0, 1.0, 1.0);
+    for octave in 0..octaves {
+        let noise = value_noise_in_space(seed.wrapping_add(u64::from(octave)), scale * at);
+        sum += strength * (2.0 * noise - 1.0).abs();
+        most += strength;
+        strength *= 0.5;
+        scale *= 2.03;
+    }
+    sum / most.max(f32::MIN_POSITIVE)
+}
+
 /// Octaves of that noise, each of half the strength and size of the one before, over their greatest sum.
 pub(super) fn fractal_noise(seed: u64, at: Vec3, octaves: u32) -> f32 {
     let (mut sum, mut most, mut strength, mut scale) = (0.0, 0.0, 1.0, 1.0);

@@ -95,6 +95,16 @@ impl Volume {
         if points.is_empty() { self.bounds().corners().to_vec() } else { points }
     }
 
+    /// Least and greatest numbers along x, y and z of the voxels whose values exceed `threshold`; none where none does.
+    pub fn occupied_voxels(&self, threshold: f32) -> Option<[Vec3; 2]> {
+        let [width, height, _] = self.size.map(|side| side as usize);
+        let exceeding = self.values.iter().enumerate().filter(|(_, value)| **value > threshold);
+        let voxels = exceeding.map(|(i, _)| {
+            Vec3::from([i % width, i / width % height, i / width / height].map(|at| at as f32))
+        });
+        Bounds::of(voxels).map(|Bounds { min, max }| [min, max])
+    }
+
     /// The shortest side of a voxel, metres.
     pub fn voxel(&self) -> f32 {
         let sides = [self.world_from_unit.x_axis, self.world_from_unit.y_axis, self.world_from_unit.z_axis];
@@ -106,6 +116,19 @@ impl Volume {
 /// From where to where voxels `first` to `last` of `side` are read, in halves of a voxel.
 fn spread([first, last]: [usize; 2], side: usize) -> [usize; 2] {
     [(2 * first).saturating_sub(1), (2 * last + 3).min(2 * side)]
+}
+
+/// The range of values of a volume for which none is given: its least and greatest finite number; where all are alike, one that
+/// begins there.
+pub fn value_range(values: &[f32]) -> [f32; 2] {
+    let finite = values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) = finite
+        .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    match (low <= high, low < high) {
+        (_, true) => [low, high],
+        (true, _) => [low, low + low.abs().max(1.0)],
+        (false, _) => [0.0, 1.0],
+    }
 }
 
 /// A volume from a function of places in the box 0..1, which reaches from `min` to `max` in the world.

@@ -54,19 +54,6 @@ pub enum PainterlyError {
     /// The transfer function.
     #[error(transparent)]
     Function(#[from] TransferError),
-    /// A file of a transfer function.
-    #[cfg(feature = "command")]
-    #[error("the transfer function {0}")]
-    File(#[from] super::TomlFileError),
-    /// What such a file says.
-    #[cfg(feature = "command")]
-    #[error("the transfer function {path}: {reason}")]
-    Transfer {
-        /// The file.
-        path: std::path::PathBuf,
-        /// What is impossible.
-        reason: String,
-    },
     /// A picture without pixels, or too large.
     #[error("pictures of {size:?} are impossible: every side must lie between 1 and {limit} on this device")]
     Size {

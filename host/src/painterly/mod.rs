@@ -24,10 +24,6 @@ mod strokes;
 mod style;
 #[cfg(feature = "command")]
 mod style_file;
-#[cfg(feature = "command")]
-mod toml_file;
-#[cfg(feature = "command")]
-mod transfer_file;
 mod volume;
 
 pub use advect::{Advect, AdvectBound, StreakParameters};
@@ -45,8 +41,4 @@ pub use strokes::{StrokeSettings, StrokeStep, StrokeTargets, Strokes};
 pub use style::{DensityBounds, LayerStyle, Orientation, PainterlyStyle, Rates};
 #[cfg(feature = "command")]
 pub use style_file::{STYLES, parse_style, read_style};
-#[cfg(feature = "command")]
-pub use toml_file::TomlFileError;
-#[cfg(feature = "command")]
-pub use transfer_file::{TRANSFERS, TransferFunction, parse_transfer, read_transfer};
-pub use volume::{IsoVolume, value_range};
+pub use volume::IsoVolume;

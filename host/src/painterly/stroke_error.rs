@@ -20,7 +20,7 @@ pub enum StrokeError {
     /// A style file.
     #[cfg(feature = "command")]
     #[error("the style {0}")]
-    File(#[from] super::TomlFileError),
+    File(#[from] crate::formats::TomlFileError),
     /// Number of strokes.
     #[error("a buffer of {given} strokes is impossible: it must hold between 1 and {limit} on this device")]
     Capacity {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Styles of strokes as TOML files.
 
-use super::{PainterlyStyle, StrokeError, toml_file};
+use super::{PainterlyStyle, StrokeError};
+use crate::formats::{parse_toml, read_toml};
 use std::path::Path;
 
 /// The styles that come with Airlight: names and texts.
@@ -19,7 +20,7 @@ pub const STYLES: [(&str, &str); 4] = [
 /// [`StrokeError::Style`] for a number that is impossible.
 pub fn read_style(path: impl AsRef<Path>) -> Result<PainterlyStyle, StrokeError> {
     let path = path.as_ref();
-    parse_style(path, &toml_file::read(path)?)
+    parse_style(path, &read_toml(path)?)
 }
 
 /// Like [`read_style`] for a text. `path`: where it lies, for errors.
@@ -27,7 +28,7 @@ pub fn read_style(path: impl AsRef<Path>) -> Result<PainterlyStyle, StrokeError>
 /// # Errors
 /// As [`read_style`].
 pub fn parse_style(path: impl AsRef<Path>, text: &str) -> Result<PainterlyStyle, StrokeError> {
-    let style: PainterlyStyle = toml_file::parse(path.as_ref(), text)?;
+    let style: PainterlyStyle = parse_toml(path.as_ref(), text)?;
     style.check()?;
     Ok(style)
 }

@@ -3,7 +3,7 @@
 
 use super::PainterlyError;
 use crate::core::VolumeTextureError;
-use crate::data::Volume;
+use crate::data::{Volume, value_range};
 use crate::gpu::Gpu;
 use crate::resource::Texture;
 use glam::Mat4;
@@ -62,18 +62,5 @@ impl IsoVolume {
         let sides = [world_from_unit.x_axis, world_from_unit.y_axis, world_from_unit.z_axis];
         let voxel = |axis: usize| sides[axis].truncate().length() / self.size[axis] as f32;
         voxel(0).min(voxel(1)).min(voxel(2))
-    }
-}
-
-/// The range of values of a volume for which none is given: its least and greatest finite number; where all are alike, one that
-/// begins there.
-pub fn value_range(values: &[f32]) -> [f32; 2] {
-    let finite = values.iter().copied().filter(|value| value.is_finite());
-    let (low, high) = finite
-        .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-    match (low <= high, low < high) {
-        (_, true) => [low, high],
-        (true, _) => [low, low + low.abs().max(1.0)],
-        (false, _) => [0.0, 1.0],
     }
 }

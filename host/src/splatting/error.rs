@@ -4,6 +4,7 @@
 use crate::core::{LightError, VolumeTextureError};
 use crate::gpu::GpuError;
 use crate::pass::PassError;
+use glam::Vec3;
 
 /// Why sheets cannot be drawn as asked.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +65,16 @@ pub enum SplattingError {
         /// Distance of the farthest point.
         farthest: f32,
     },
+    /// A light in the midst of what it shines on.
+    #[error(
+        "the light at {0} is inside the volumes' box: light has to meet the first sheet first; move it out"
+    )]
+    LightInside(Vec3),
+    /// A light that would have to shine into more than a frustum.
+    #[error(
+        "the light at {0} is too near to the volumes: it sees them over more than 160 degrees; move it away"
+    )]
+    LightTooNear(Vec3),
     /// The light.
     #[error(transparent)]
     Light(#[from] LightError),

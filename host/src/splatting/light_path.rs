@@ -10,6 +10,7 @@ use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
+use airlight_validate::Definitions;
 use glam::Vec3;
 
 /// Draws what sheets are along light rays.
@@ -93,7 +94,7 @@ pub(super) struct DirectLight {
 }
 
 impl DirectLight {
-    /// `resources`: all that the picture has, by name; `numbers`: of the sheets.
+    /// `resources`: all that the picture has, by name, with or without surfaces and a light texture; `numbers`: of the sheets.
     pub(super) fn new(
         gpu: &Gpu,
         shaders: &Shaders,
@@ -101,9 +102,11 @@ impl DirectLight {
         numbers: &[Buffer],
         [width, height]: [u32; 2],
     ) -> Result<Self, SplattingError> {
-        let polygons = resources.iter().any(|(name, _)| *name == "light_heights");
-        let permutation = if polygons { "polygons" } else { "default" };
-        let pass = Pass::compute(gpu, shaders, "splatting/light_sheet", permutation)?;
+        let has = |wanted: &str| resources.iter().any(|(name, _)| *name == wanted);
+        let flags = [("POLYGONS", "light_heights"), ("LIGHT_TEXTURE", "light_texture")];
+        let flags = flags.into_iter().filter(|(_, resource)| has(resource));
+        let definitions = flags.fold(Definitions::new(), |all, (name, _)| all.flag(name));
+        let pass = Pass::compute_with(gpu, shaders, "splatting/light_sheet", &definitions)?;
         let shadow = Texture::storage(gpu, [width, height], LIGHT);
         let left = Buffer::storage(gpu, 16 * u64::from(width) * u64::from(height));
         let mut all = resources.to_vec();

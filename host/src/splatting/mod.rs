@@ -6,8 +6,10 @@
 
 mod error;
 mod frame;
+mod inputs;
 mod kernel;
 mod light_path;
+mod lights;
 mod means;
 mod order;
 mod passes;
@@ -24,8 +26,10 @@ pub use error::SplattingError;
 pub use frame::{
     LightTransport, ScatteringSettings, Shading, SheetFrame, SheetLighting, SheetSettings, SoftShadows,
 };
+pub use inputs::SheetInputs;
 pub use kernel::Kernel;
-pub use picture::{SheetInputs, SheetPicture};
+pub use lights::light_around;
+pub use picture::SheetPicture;
 pub use scattered_light::Scattering;
 pub use sheets::{SheetNumber, SheetTargets, Sheets};
 pub use soft_plane::{SoftLight, SoftPlane};

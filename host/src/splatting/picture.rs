@@ -11,11 +11,12 @@ use super::order::{Order, tiles};
 use super::passes::{LIGHT, MEANS, Passes};
 use super::scattered_light::ScatteredLight;
 use super::soft_light::{AreaLight, LitSurfaces};
-use super::surfaces::{SurfacePictures, Surfaces};
+use super::surfaces::SurfacePictures;
 use super::{
-    LightTransport, SheetFrame, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats, SplattingError,
+    LightTransport, SheetFrame, SheetInputs, SheetLighting, SheetNumber, SheetSettings, Sheets, Splats,
+    SplattingError,
 };
-use crate::core::{Camera, Light, Transfer};
+use crate::core::{Camera, Light};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Resource};
 use crate::resource::{Buffer, Sampler, Texture};
@@ -23,17 +24,6 @@ use crate::shaders::Shaders;
 use encase::ShaderType;
 use glam::Vec3;
 use std::sync::{Mutex, PoisonError};
-
-/// What is drawn.
-#[derive(Clone, Copy)]
-pub struct SheetInputs<'a, 't> {
-    /// Of all volumes of the scene, which act as one.
-    pub splats: &'a [Splats],
-    /// Colour and opacity of their values.
-    pub transfer: &'t Transfer,
-    /// Polygons in, before and behind them.
-    pub surfaces: Option<&'a Surfaces>,
-}
 
 /// Volumes drawn sheet by sheet.
 pub struct SheetPicture<'a> {
@@ -93,6 +83,7 @@ impl<'a> SheetPicture<'a> {
         settings: SheetSettings,
         size: [u32; 2],
     ) -> Result<Self, SplattingError> {
+        let SheetInputs { splats, transfer, surfaces: given, light_texture } = inputs;
         in_range("number of sheets", settings.count as f32, 1.0..=4096.0, "from 1 to 4096")?;
         let limit = gpu.limits.max_texture_dimension_2d as f32;
         for side in size.into_iter().chain(settings.light_size) {
@@ -104,17 +95,16 @@ impl<'a> SheetPicture<'a> {
             )?;
         }
         let uniforms = Uniforms::new(gpu, &settings);
-        let polygons = inputs.surfaces.is_some();
+        let polygons = given.is_some();
         let passes = Passes::new(gpu, shaders, &settings, polygons)?;
         let picture = Texture::storage(gpu, size, LIGHT);
         let light_means = Texture::target(gpu, settings.light_size, MEANS);
         let sheets = [&uniforms.sheets, &uniforms.kernel];
         let targets = [&picture, &light_means];
-        let order =
-            Order::new(gpu, shaders, inputs.splats, sheets, targets, settings.count, settings.scanning)?;
+        let order = Order::new(gpu, shaders, splats, sheets, targets, settings.count, settings.scanning)?;
         let numbers: Vec<Buffer> = (0..settings.count).map(|index| number(gpu, index)).collect();
         let buffers = [&uniforms.camera, &uniforms.light_camera, sheets[0]];
-        let surfaces = inputs.surfaces.map(|surfaces| {
+        let surfaces = given.map(|surfaces| {
             let far = matches!(settings.transport, LightTransport::Soft(_));
             SurfacePictures::new(gpu, shaders, surfaces, buffers, [size, settings.light_size], far)
         });
@@ -136,7 +126,7 @@ impl<'a> SheetPicture<'a> {
             ("sheets", sheets[0].into()),
             ("lighting", (&uniforms.lighting).into()),
             ("light_sheet", (&light_means).into()),
-            ("transfer", (&inputs.transfer.texture).into()),
+            ("transfer", (&transfer.texture).into()),
             ("linear_sampler", (&sampler).into()),
             ("sum", (&sum).into()),
             ("picture", (&picture).into()),
@@ -149,6 +139,7 @@ impl<'a> SheetPicture<'a> {
                 ("normal", surfaces.normal().into()),
             ]);
         }
+        all.extend(light_texture.map(|texture| ("light_texture", texture.into())));
         all.extend(surface_light.as_ref().map(|buffer| ("surface_light", buffer.into())));
         let path: Box<dyn LightPath> = match settings.transport {
             LightTransport::Direct => {
@@ -182,7 +173,7 @@ impl<'a> SheetPicture<'a> {
             composites.push(passes.composite.bind_known(gpu, &resources)?);
         }
         Ok(Self {
-            splats: inputs.splats,
+            splats,
             settings,
             surfaces,
             reversed: Mutex::default(),

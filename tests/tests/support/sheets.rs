@@ -59,11 +59,10 @@ impl Shot {
 
 /// A picture of the camera's size.
 pub fn shoot(splats: &Splats, transfer: &Transfer, settings: SheetSettings, frame: &SheetFrame) -> Shot {
-    let inputs = SheetInputs { splats: std::slice::from_ref(splats), transfer, surfaces: None };
-    shoot_all(inputs, settings, frame)
+    shoot_all(SheetInputs::new(std::slice::from_ref(splats), transfer), settings, frame)
 }
 
-/// The same of several volumes and surfaces.
+/// The same of several volumes, surfaces, through a light texture.
 pub fn shoot_all(inputs: SheetInputs<'_, '_>, settings: SheetSettings, frame: &SheetFrame) -> Shot {
     let size = [frame.camera.viewport.x as u32, frame.camera.viewport.y as u32];
     let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, size).unwrap();

@@ -4,6 +4,7 @@
 // note: Dispatch begin_light over the shadow buffer, then light_sheet_left for each sheet, indirectly, after its picture; a sheet
 // note: without splats runs nothing. What is left adds up in 32 bits, whatever blending rounds; the texture is for filtered reads.
 // definition POLYGONS: sheets end at surfaces; a texel keeps what reached its surface.
+// definition LIGHT_TEXTURE: a texture colours the light.
 // binding light_camera: the light as a camera.
 // binding light: the light.
 // binding sheets: the sheets.
@@ -15,9 +16,13 @@
 // binding light_heights: of the first surface along each light ray, metres, NO_SURFACE where there is none, r32float; with POLYGONS only.
 // binding left: what is left of the light, linear RGB, a vector a texel of the shadow buffer, row after row.
 // binding shadow: out, the same.
+// binding light_texture: linear RGB 0..1 over the whole shadow buffer, any float format that filters; with LIGHT_TEXTURE only.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
 #import airlight::core::light::Light
+#ifdef LIGHT_TEXTURE
+#import airlight::core::light::{shadow_point, light_texture_color}
+#endif
 #import airlight::splatting::sheets::{Sheets, metres_in_sheet, sheet_mean}
 #import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter}
 #ifdef POLYGONS
@@ -38,6 +43,9 @@
 @group(#{GROUP}) @binding(9) var light_heights: texture_2d<f32>;
 @group(#{GROUP}) @binding(10) var<uniform> number: SheetNumber;
 #endif
+#ifdef LIGHT_TEXTURE
+@group(#{GROUP}) @binding(11) var light_texture: texture_2d<f32>;
+#endif
 
 /// Keeps what is left of the light at a texel.
 fn keep(texel: vec2<u32>, light_left: vec4<f32>) {
@@ -50,9 +58,17 @@ fn keep(texel: vec2<u32>, light_left: vec4<f32>) {
 
 @compute @workgroup_size(16, 8)
 fn begin_light(@builtin(global_invocation_id) id: vec3<u32>) {
-    if all(id.xy < textureDimensions(shadow)) {
-        keep(id.xy, vec4<f32>(max(light.radiance, vec3<f32>(0.0)), 1.0));
+    let size = textureDimensions(shadow);
+    if any(id.xy >= size) {
+        return;
     }
+    var color = vec3<f32>(1.0);
+#ifdef LIGHT_TEXTURE
+    // Any depth serves.
+    let point = shadow_point(light, vec2<f32>(size), vec2<f32>(id.xy) + 0.5, 0.5);
+    color = light_texture_color(light, light_texture, linear_sampler, point);
+#endif
+    keep(id.xy, vec4<f32>(color * max(light.radiance, vec3<f32>(0.0)), 1.0));
 }
 
 @compute @workgroup_size(16, 8)

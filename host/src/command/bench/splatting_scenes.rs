@@ -121,8 +121,7 @@ impl Scene {
         let [r, g, b] = ALBEDO;
         let table: Vec<_> = (0..=1024).map(|i| [r, g, b, opacity(i)]).collect();
         let transfer = Transfer::new(gpu, &table).map_err(CommandError::failure)?;
-        let inputs =
-            SheetInputs { splats: std::slice::from_ref(splats), transfer: &transfer, surfaces: None };
+        let inputs = SheetInputs::new(std::slice::from_ref(splats), &transfer);
         let picture =
             SheetPicture::new(gpu, shaders, inputs, settings, self.size).map_err(CommandError::failure)?;
         let lighting = SheetLighting::new(self.extinction);

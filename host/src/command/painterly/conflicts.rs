@@ -33,7 +33,7 @@ pub fn check(flags: &Options) -> Result<(), CommandError> {
             "a single picture has none: give --frames A..B, or leave it out",
         ),
     ];
-    let framing = flags.camera.framing_rules(flags.fov.is_some(), flags.height.is_some());
+    let framing = flags.view.rules();
     for (refused, flag, problem) in own.into_iter().chain(framing) {
         if refused {
             return Err(CommandError::misuse(flag, problem));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The flags of `airlight painterly`.
 
-use crate::command::parse::{self, LightSpelling, Projection};
+use crate::command::camera::CameraFlags;
+use crate::command::parse::{self, LightSpelling};
 use crate::command::scattering::JitterSpelling;
 use crate::command::sequence::{FrameRange, frames, rate};
 use crate::data::linear_from_hexadecimal;
@@ -86,21 +87,9 @@ pub struct Options {
     /// Factor on the light, 0 to 1000.
     #[arg(long, value_name = "F", default_value = "1", value_parser = exposure, allow_hyphen_values = true)]
     pub exposure: f32,
-    /// How view rays run.
-    #[arg(long, value_enum, default_value = "perspective")]
-    pub camera: Projection,
-    /// Position of the eye, metres [default: frames what is solid, however it turns].
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
-    pub eye: Option<Vec3>,
-    /// Point in the middle of the picture, metres [default: the middle of what is solid].
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
-    pub target: Option<Vec3>,
-    /// Vertical field of view of a perspective camera, degrees [default: 35].
-    #[arg(long, value_name = "DEG", value_parser = parse::number, allow_hyphen_values = true)]
-    pub fov: Option<f32>,
-    /// Height of the picture of an orthographic camera, metres [default: frames what is solid].
-    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true)]
-    pub height: Option<f32>,
+    /// The camera.
+    #[command(flatten)]
+    pub view: CameraFlags,
     /// A plane in the world that cuts away what lies where NX x + NY y + NZ z + OFFSET < 0; up to eight may be given.
     #[arg(long, value_name = "NX,NY,NZ,OFFSET", value_parser = plane, allow_hyphen_values = true)]
     pub clip: Vec<Vec4>,

@@ -4,14 +4,11 @@
 use super::flags::Options;
 use super::shrink::shrunk;
 use crate::command::CommandError;
-use crate::command::error::medium_error;
-use crate::core::TransferPoint;
-use crate::data::{Bounds, Volume, load_volume};
-use crate::painterly::{TRANSFERS, TransferFunction, parse_transfer, read_transfer, value_range};
+use crate::command::transfers::transfer;
+use crate::command::volumes::load;
+use crate::core::{TransferFunction, TransferPoint};
+use crate::data::{Bounds, Volume, value_range};
 use glam::{Mat4, Vec3};
-
-/// Metres of the longest side of a .npy volume.
-const LONGEST: f32 = 4.0;
 
 /// Slices that the solid is measured in.
 const SLICES: usize = 32;
@@ -47,17 +44,9 @@ impl Matter {
     /// # Errors
     /// Misuse: an unknown name. A failure: a file, or a volume that is too large.
     pub fn new(flags: &Options) -> Result<Self, CommandError> {
-        let transfer = transfer(flags)?;
-        let path = &flags.volume;
-        let mut volume = load_volume(path, flags.voxel.unwrap_or(1.0))
-            .map_err(|error| medium_error("--volume", error, "a file that ends in .nii, .nii.gz or .npy"))?;
+        let transfer = flags.transfer.as_deref().map_or_else(|| Ok(ramp()), transfer)?;
+        let volume = load(&flags.volume, flags.voxel, "a file that ends in .nii, .nii.gz or .npy")?;
         check_sides(flags, volume.size)?;
-        let array = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy"));
-        if array && flags.voxel.is_none() {
-            let longest = volume.bounds().size().max_element();
-            volume.world_from_unit =
-                Mat4::from_scale(Vec3::splat(LONGEST / longest)) * volume.world_from_unit;
-        }
         Ok(Self::of(volume, transfer, flags.iso, flags.downsample))
     }
 
@@ -151,20 +140,6 @@ impl Solid {
             })
         })
     }
-}
-
-fn transfer(flags: &Options) -> Result<TransferFunction, CommandError> {
-    let Some(path) = &flags.transfer else { return Ok(ramp()) };
-    if let Some((name, text)) = TRANSFERS.iter().find(|(name, _)| path.as_os_str() == *name) {
-        return Ok(parse_transfer(name, text)?);
-    }
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-        return Ok(read_transfer(path)?);
-    }
-    let known: Vec<_> = TRANSFERS.iter().map(|(name, _)| *name).collect();
-    let (path, known) = (path.display(), known.join(", "));
-    let problem = format!("`{path}` is unknown: give {known}, or a file that ends in .toml");
-    Err(CommandError::misuse("--transfer", problem))
 }
 
 /// From terracotta to ivory; opacity is the share of the range.

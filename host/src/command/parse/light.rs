@@ -4,6 +4,7 @@
 use super::numbers;
 use crate::Lighting;
 use crate::core::{Light, direction_from_angles};
+use crate::data::Bounds;
 use glam::Vec3;
 
 /// Radius of a spot or point light, metres: that of a lantern.
@@ -37,9 +38,52 @@ pub enum LightSpelling {
         /// Where it is.
         position: Vec3,
     },
+    /// `area:AZIMUTH,ELEVATION,DEGREES` or `area:X,Y,Z,SIDE`.
+    Area {
+        /// What its middle alone would be.
+        middle: AreaMiddle,
+        /// How wide it is: the angle in degrees that it is seen under, or its side in metres.
+        extent: f32,
+    },
+}
+
+/// Where an area light is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AreaMiddle {
+    /// At infinity, a disc in the sky.
+    Directional {
+        /// From +z towards +x, degrees.
+        azimuth: f32,
+        /// Above the horizon, degrees.
+        elevation: f32,
+    },
+    /// A square around a point.
+    Point {
+        /// Metres.
+        position: Vec3,
+    },
 }
 
 impl LightSpelling {
+    /// Where it is, metres; none at infinity.
+    pub fn position(self) -> Option<Vec3> {
+        match self {
+            Self::Directional { .. } | Self::Area { middle: AreaMiddle::Directional { .. }, .. } => None,
+            Self::Spot { position, .. }
+            | Self::Point { position }
+            | Self::Area { middle: AreaMiddle::Point { position }, .. } => Some(position),
+        }
+    }
+
+    /// The radiance by which the light gives the middle of `bounds` what a directional light of `radiance` gives it, and no more than
+    /// that within.
+    pub fn radiance_as(self, radiance: Vec3, bounds: &Bounds) -> Vec3 {
+        self.position().map_or(radiance, |position| {
+            let distance = position.distance(bounds.center()).max(0.25 * bounds.radius());
+            radiance * (distance * distance).clamp(1e-6, 1e6)
+        })
+    }
+
     /// The light with a radiance: irradiance of a directional light, radiant intensity of the others.
     pub fn lighting(self, radiance: Vec3) -> Lighting {
         match self {
@@ -55,16 +99,26 @@ impl LightSpelling {
                 radius: RADIUS,
             },
             Self::Point { position } => Lighting::Point { position, intensity: radiance, radius: RADIUS },
+            Self::Area { middle: AreaMiddle::Directional { azimuth, elevation }, .. } => {
+                Lighting::directional(direction_from_angles(azimuth, elevation), radiance)
+            }
+            // On its axis a disc of that area has this fall-off.
+            Self::Area { middle: AreaMiddle::Point { position }, extent } => Lighting::Point {
+                position,
+                intensity: radiance,
+                radius: extent / std::f32::consts::PI.sqrt(),
+            },
         }
     }
 }
 
-/// `directional:AZ,EL`, `spot:X,Y,Z,TX,TY,TZ,ANGLE[,INNER]` or `point:X,Y,Z`.
+/// `directional:AZ,EL`, `spot:X,Y,Z,TX,TY,TZ,ANGLE[,INNER]`, `point:X,Y,Z`, `area:AZ,EL,DEGREES` or `area:X,Y,Z,SIDE`.
 pub fn light(text: &str) -> Result<LightSpelling, String> {
     let wrong = || {
         format!(
             "`{text}` is not a light such as directional:135,40 (azimuth, elevation in degrees), \
-             spot:0,5,0,0,0,0,25 (position, target, degrees from the axis) or point:0,2,0"
+             spot:0,5,0,0,0,0,25 (position, target, degrees from the axis), point:0,2,0, \
+             area:135,40,5 (degrees across) or area:0,5,0,0.5 (position, metres of its side)"
         )
     };
     let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
@@ -72,11 +126,7 @@ pub fn light(text: &str) -> Result<LightSpelling, String> {
         "directional" => {
             let values = numbers(rest)?;
             let [azimuth, elevation] = values[..] else { return Err(wrong()) };
-            if elevation.abs() > 90.0 {
-                return Err(format!(
-                    "elevation {elevation} is impossible: it must be from -90 to 90 degrees"
-                ));
-            }
+            check_elevation(elevation)?;
             Ok(LightSpelling::Directional { azimuth, elevation })
         }
         "spot" => {
@@ -97,12 +147,39 @@ pub fn light(text: &str) -> Result<LightSpelling, String> {
             let [x, y, z] = values[..] else { return Err(wrong()) };
             Ok(LightSpelling::Point { position: Vec3::new(x, y, z) })
         }
-        "area" | "textured" | "environment" => {
-            Err(format!("light `{kind}` is not there yet; directional, spot and point are"))
+        "area" => match numbers(rest)?[..] {
+            [azimuth, elevation, extent] => {
+                check_elevation(elevation)?;
+                if !(0.0..=60.0).contains(&extent) || extent == 0.0 {
+                    return Err(format!(
+                        "{extent} degrees across are impossible: above 0 to 60 are possible"
+                    ));
+                }
+                Ok(LightSpelling::Area { middle: AreaMiddle::Directional { azimuth, elevation }, extent })
+            }
+            [x, y, z, extent] if extent > 0.0 => {
+                Ok(LightSpelling::Area { middle: AreaMiddle::Point { position: Vec3::new(x, y, z) }, extent })
+            }
+            [_, _, _, extent] => Err(format!("a side of {extent} m is impossible: it must be positive")),
+            _ => Err(wrong()),
+        },
+        "textured" | "environment" => {
+            Err(format!("light `{kind}` is not there yet; directional, spot, point and area are"))
         }
         _ => Err(wrong()),
     }
 }
+
+fn check_elevation(elevation: f32) -> Result<(), String> {
+    if elevation.abs() <= 90.0 {
+        return Ok(());
+    }
+    Err(format!("elevation {elevation} is impossible: it must be from -90 to 90 degrees"))
+}
+
+/// What commands without soft shadows say of area lights.
+pub const NO_AREA: &str =
+    "`area` casts soft shadows, which only `airlight splatting` has: take directional, spot or point";
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
@@ -127,6 +204,15 @@ mod tests {
             light("point:1,-2,3.5").unwrap(),
             LightSpelling::Point { position: Vec3::new(1.0, -2.0, 3.5) }
         );
+        let sun = AreaMiddle::Directional { azimuth: 10.0, elevation: 20.0 };
+        assert_eq!(light("area:10,20,3").unwrap(), LightSpelling::Area { middle: sun, extent: 3.0 });
+        let window = light("area:1,2,3,0.5").unwrap();
+        let position = Vec3::new(1.0, 2.0, 3.0);
+        assert_eq!(window, LightSpelling::Area { middle: AreaMiddle::Point { position }, extent: 0.5 });
+        let Lighting::Point { radius, .. } = window.lighting(Vec3::ONE) else { panic!("no point light") };
+        assert!((std::f32::consts::PI * radius * radius - 0.25).abs() < 1e-6);
+        assert!(matches!(light("area:0,0,1").unwrap().lighting(Vec3::Y), Lighting::Directional { .. }));
+        assert_eq!((window.position(), light("directional:0,0").unwrap().position()), (Some(position), None));
         let Lighting::Point { intensity, .. } = light("point:0,0,0").unwrap().lighting(Vec3::Y) else {
             panic!("no point light");
         };
@@ -150,7 +236,13 @@ mod tests {
             ("spot:0,1,0,0,0,inf,20", "inf"),
             ("point:1,2", "point:1,2"),
             ("point:1,2,three", "three"),
-            ("area:1", "not there yet"),
+            ("area:1", "area:135,40,5"),
+            ("area:0,91,5", "-90 to 90"),
+            ("area:0,30,0", "above 0 to 60"),
+            ("area:0,30,61", "above 0 to 60"),
+            ("area:0,5,0,0", "must be positive"),
+            ("area:0,5,0,-1", "must be positive"),
+            ("environment:a.exr", "not there yet"),
             ("", "``"),
         ] {
             let error = light(wrong).unwrap_err();

@@ -2,9 +2,11 @@
 //! Spellings that all commands share.
 
 mod light;
+mod placed;
 mod view;
 
-pub use light::{LightSpelling, light};
+pub use light::{LightSpelling, NO_AREA, light};
+pub use placed::{Placed, placed};
 pub use view::{DepthSpelling, Projection, cascades, samples};
 
 use glam::Vec3;
@@ -41,6 +43,14 @@ pub fn positive(text: &str) -> Result<f32, String> {
     if value > 0.0 { Ok(value) } else { Err(format!("`{text}` is impossible: it must be positive")) }
 }
 
+/// One number for all colours, or `r,g,b`.
+pub fn grey_or_colour(text: &str) -> Result<Vec3, String> {
+    if let Ok(grey) = number(text) {
+        return Ok(Vec3::splat(grey));
+    }
+    vector(text).map_err(|_| format!("`{text}` is neither a finite number nor three r,g,b"))
+}
+
 fn numbers(text: &str) -> Result<Vec<f32>, String> {
     text.split(',').map(number).collect()
 }
@@ -56,6 +66,11 @@ mod tests {
         assert_eq!(size("640x480").unwrap(), [640, 480]);
         for wrong in ["", "1,2", "1,2,3,4", "1,nan,3", "a,b,c", "inf,0,0"] {
             assert!(vector(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(grey_or_colour("0.5"), Ok(Vec3::splat(0.5)));
+        assert_eq!(grey_or_colour("1,0.5,0"), Ok(Vec3::new(1.0, 0.5, 0.0)));
+        for wrong in ["", "1,2", "nan", "red", "1,2,inf"] {
+            assert!(grey_or_colour(wrong).is_err(), "{wrong}");
         }
         assert_eq!(positive("0.5"), Ok(0.5));
         for wrong in ["", "0", "-1", "nan", "inf"] {

@@ -4,7 +4,7 @@
 use super::flags::{
     JitterSpelling, MethodSpelling, Options, RectificationSpelling, ReferenceSpelling, StartSpelling,
 };
-use crate::command::parse::{DepthSpelling, LightSpelling, Projection};
+use crate::command::parse::{DepthSpelling, LightSpelling, NO_AREA, Projection};
 use crate::scattering::{RANK_COLUMNS, Visibility};
 
 /// What cannot be meant.
@@ -51,6 +51,7 @@ fn camera(flags: &Options) -> Vec<Rule> {
 
 fn light(flags: &Options) -> Vec<Rule> {
     vec![
+        (matches!(flags.light, LightSpelling::Area { .. }), "--light", NO_AREA),
         (
             matches!(flags.light, LightSpelling::Point { .. }) && flags.light_texture.is_some(),
             "--light-texture",

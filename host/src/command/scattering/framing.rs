@@ -4,7 +4,7 @@
 use super::flags::Options;
 use crate::Lighting;
 use crate::command::CommandError;
-use crate::command::parse::{DepthSpelling, LightSpelling, Projection};
+use crate::command::parse::{DepthSpelling, Projection};
 use crate::core::{Camera, CameraError, OrthographicView, PerspectiveView, View};
 use crate::data::Bounds;
 use crate::scattering::Medium;
@@ -60,7 +60,9 @@ impl Framing {
         Ok(Self {
             cameras: views.iter().map(camera).collect::<Result<_, _>>()?,
             views,
-            light: flags.light.lighting(flags.radiance.unwrap_or_else(|| radiance(flags, bounds))),
+            light: flags
+                .light
+                .lighting(flags.radiance.unwrap_or_else(|| flags.light.radiance_as(RADIANCE, bounds))),
             medium: Medium::new(extinction, Vec3::splat(flags.albedo), flags.g, limit)?,
         })
     }
@@ -109,17 +111,6 @@ fn moved(view: View, by: Vec3) -> View {
         }
         View::Orthographic(view) => {
             OrthographicView { eye: view.eye + by, target: view.target + by, ..view }.into()
-        }
-    }
-}
-
-/// What lights the middle of the mesh as a directional light would, and no more than that within it.
-fn radiance(flags: &Options, bounds: &Bounds) -> Vec3 {
-    match flags.light {
-        LightSpelling::Directional { .. } => RADIANCE,
-        LightSpelling::Spot { position, .. } | LightSpelling::Point { position } => {
-            let distance = position.distance(bounds.center()).max(0.25 * bounds.radius());
-            RADIANCE * (distance * distance).clamp(1e-6, 1e6)
         }
     }
 }

@@ -5,6 +5,7 @@ use super::flags::{FormatSpelling, MapSpelling, Options, Source, SplatSpelling};
 use super::medium::{Matter, Medium};
 use crate::command::CommandError;
 use crate::command::parse::LightSpelling;
+use crate::command::volumes::is_array;
 use crate::transmittance::Form;
 
 /// Most pixels a side.
@@ -18,7 +19,7 @@ const MOST_SUMMED: usize = 200_000;
 /// Misuse: a value, or two flags that cannot be meant together.
 pub fn check(flags: &Options) -> Result<(), CommandError> {
     let refuse = |flag: &str, problem: String| Err(CommandError::misuse(flag, problem));
-    let framing = flags.camera.framing_rules(flags.fov.is_some(), flags.height.is_some());
+    let framing = flags.view.rules();
     let rules = map(flags).into_iter().chain(medium(flags)).chain(framing);
     for (refused, flag, problem) in rules {
         if refused {
@@ -130,7 +131,7 @@ fn map(flags: &Options) -> Vec<Rule> {
 fn medium(flags: &Options) -> Vec<Rule> {
     let source = flags.source();
     let file = matches!(source, Source::VolumeFile(_));
-    let array = matches!(source, Source::VolumeFile(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy")));
+    let array = matches!(source, Source::VolumeFile(path) if is_array(path));
     let particles = flags.particles.is_some();
     vec![
         (

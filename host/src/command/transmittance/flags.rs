@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The flags of `airlight transmittance`.
 
-use crate::command::parse::{self, LightSpelling, Projection};
+use crate::command::camera::CameraFlags;
+use crate::command::parse::{self, LightSpelling};
 use crate::core::Reading;
 use crate::transmittance::{Form, MapSettings, Precision};
 use clap::ValueEnum;
@@ -140,28 +141,16 @@ pub struct Options {
     #[arg(long, value_name = "R,G,B", default_value = "26,23,19", value_parser = parse::vector, allow_hyphen_values = true)]
     pub radiance: Vec3,
     /// Single-scattering albedo, 0..1, one number or R,G,B.
-    #[arg(long, value_name = "A|R,G,B", default_value = "0.98", value_parser = grey_or_colour, allow_hyphen_values = true)]
+    #[arg(long, value_name = "A|R,G,B", default_value = "0.98", value_parser = parse::grey_or_colour, allow_hyphen_values = true)]
     pub albedo: Vec3,
     /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
     #[arg(long, value_name = "G", default_value = "0.2", value_parser = parse::number, allow_hyphen_values = true)]
     pub g: f32,
-    /// How view rays run.
-    #[arg(long, value_enum, default_value = "perspective")]
-    pub camera: Projection,
-    /// Position of the eye, metres [default: frames the medium].
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
-    pub eye: Option<Vec3>,
-    /// Point in the middle of the picture, metres [default: centre of the medium].
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
-    pub target: Option<Vec3>,
-    /// Vertical field of view of a perspective camera, degrees [default: 35].
-    #[arg(long, value_name = "DEG", value_parser = parse::number, allow_hyphen_values = true)]
-    pub fov: Option<f32>,
-    /// Height of the picture of an orthographic camera, metres [default: frames the medium].
-    #[arg(long, value_name = "M", value_parser = parse::number, allow_hyphen_values = true)]
-    pub height: Option<f32>,
+    /// The camera.
+    #[command(flatten)]
+    pub view: CameraFlags,
     /// Linear RGB radiance behind the medium, one number or R,G,B [default: a sky].
-    #[arg(long, value_name = "A|R,G,B", value_parser = grey_or_colour, allow_hyphen_values = true)]
+    #[arg(long, value_name = "A|R,G,B", value_parser = parse::grey_or_colour, allow_hyphen_values = true)]
     pub background: Option<Vec3>,
     /// Size of the picture.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse::size)]
@@ -221,14 +210,6 @@ impl Options {
     }
 }
 
-/// One number for all colours, or `r,g,b`.
-fn grey_or_colour(text: &str) -> Result<Vec3, String> {
-    if let Ok(grey) = parse::number(text) {
-        return Ok(Vec3::splat(grey));
-    }
-    parse::vector(text).map_err(|_| format!("`{text}` is neither a finite number nor three r,g,b"))
-}
-
 /// Two corners of a box.
 fn corners(text: &str) -> Result<[Vec3; 2], String> {
     let values = text.split(',').map(parse::number).collect::<Result<Vec<_>, _>>()?;
@@ -243,12 +224,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_and_boxes_are_read_and_nonsense_is_refused() {
-        assert_eq!(grey_or_colour("0.5"), Ok(Vec3::splat(0.5)));
-        assert_eq!(grey_or_colour("1,0.5,0"), Ok(Vec3::new(1.0, 0.5, 0.0)));
+    fn boxes_are_read_and_nonsense_is_refused() {
         assert_eq!(corners("-1,-2,-3,1,2,3"), Ok([Vec3::new(-1.0, -2.0, -3.0), Vec3::new(1.0, 2.0, 3.0)]));
         for wrong in ["", "1,2", "nan", "red", "1,2,inf"] {
-            assert!(grey_or_colour(wrong).is_err() && corners(wrong).is_err(), "{wrong}");
+            assert!(corners(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -5,14 +5,11 @@ use super::flags::Options;
 use super::medium::Medium;
 use crate::StageError;
 use crate::command::CommandError;
-use crate::command::fit::Fit;
-use crate::command::parse::Projection;
-use crate::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView, View};
+use crate::command::camera::Subject;
+use crate::core::{Camera, Light};
 use crate::transmittance::MediumLighting;
 use glam::Vec3;
 
-/// Of a perspective camera, vertical, degrees.
-const FIELD_OF_VIEW: f32 = 35.0;
 /// From the medium to the eye.
 const FROM: Vec3 = Vec3::new(-0.4, 0.1, 1.0);
 
@@ -32,26 +29,12 @@ impl Framing {
     /// # Errors
     /// Misuse: values that no camera or medium can have.
     pub fn new(flags: &Options, medium: &Medium) -> Result<Self, CommandError> {
-        let target = flags.target.unwrap_or(medium.framed.center());
-        let [width, height] = flags.size.map(|side| side as f32);
-        let (fov, aspect) = (flags.fov.unwrap_or(FIELD_OF_VIEW), width / height);
-        let fit = Fit { center: medium.framed.center(), from: FROM.normalize(), aspect };
-        let distance = fit.distance(medium.framed.corners(), fov.clamp(0.1, 170.0));
-        let eye = flags.eye.unwrap_or(target + fit.from * distance);
-        let away = (medium.bounds.center() - eye).length();
-        let radius = medium.bounds.radius().max(1e-4);
-        let far = away + 1.1 * radius;
-        let depth = DepthRange::Forward;
-        let view: View = match flags.camera {
-            Projection::Perspective => {
-                let near = (away - 1.1 * radius).max(1e-3 * far);
-                PerspectiveView { eye, target, field_of_view: fov, near, far, depth }.into()
-            }
-            Projection::Orthographic => {
-                let height = flags.height.unwrap_or_else(|| fit.height(medium.framed.corners()));
-                OrthographicView { eye, target, height, near: away - 1.1 * radius, far, depth }.into()
-            }
-        };
+        let (bounds, framed) = (&medium.bounds, &medium.framed);
+        let ball = (bounds.center(), bounds.radius().max(1e-4));
+        let points = framed.corners();
+        let subject = Subject { center: framed.center(), points: &points, ball, from: FROM, turn: 0.0 };
+        let view = flags.view.view(&subject, flags.size);
+        let far = view.far();
         let camera = Camera::new(&view, flags.size).map_err(StageError::Camera)?;
         let light = medium.light(flags.light.lighting(flags.radiance)).map_err(StageError::Light)?;
         Ok(Self {

@@ -5,15 +5,16 @@ use super::flags::{Options, Source};
 use crate::Lighting;
 use crate::command::CommandError;
 use crate::command::error::medium_error;
+use crate::command::volumes::{load, voxels};
 use crate::core::{Light, LightError};
-use crate::data::{Bounds, Particles, Volume, burst, cloud, load_particles, load_volume, plume};
+use crate::data::{Bounds, Particles, Volume, burst, cloud, load_particles, plume};
 use crate::transmittance::ParticleCounts;
 use glam::Vec3;
 
 /// Optical depth along the longest side of a file of a volume, were all of it as dense as its densest voxel.
 const OPTICAL_DEPTH: f32 = 32.0;
-/// Metres of the longest side of a .npy volume.
-const LONGEST: f32 = 4.0;
+/// Voxels along the longest side of what is made.
+const VOXELS: u32 = 160;
 /// Share of the greatest extinction below which nothing is to be framed.
 const SEEN: f32 = 0.05;
 /// Farther from the origin nothing is seen, metres.
@@ -49,19 +50,13 @@ impl Medium {
     pub fn new(flags: &Options) -> Result<Self, CommandError> {
         let seed = flags.seed.unwrap_or(1);
         let scale = flags.extinction_scale;
+        let count = flags.voxels.unwrap_or(VOXELS);
         match flags.source() {
-            Source::Cloud => made(cloud(voxels(flags, [6.0, 3.0, 5.0]), seed), scale),
-            Source::Plume => made(plume(voxels(flags, [2.0, 5.0, 2.0]), seed), scale),
+            Source::Cloud => made(cloud(voxels(count, [6.0, 3.0, 5.0]), seed), scale),
+            Source::Plume => made(plume(voxels(count, [2.0, 5.0, 2.0]), seed), scale),
             Source::VolumeFile(path) => {
                 let known = "cloud, plume, or a file that ends in .nii, .nii.gz or .npy";
-                let volume = load_volume(path, flags.voxel.unwrap_or(1.0));
-                let mut volume = volume.map_err(|error| medium_error("--volume", error, known))?;
-                let array = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy"));
-                if array && flags.voxel.is_none() {
-                    let longest = volume.bounds().size().max_element();
-                    let shrink = glam::Mat4::from_scale(Vec3::splat(LONGEST / longest));
-                    volume.world_from_unit = shrink * volume.world_from_unit;
-                }
+                let volume = load(path, flags.voxel, known)?;
                 let threshold = flags.threshold.unwrap_or(0.0);
                 Self::of_volume(volume, threshold, scale).map_err(|problem| {
                     CommandError::failure(format!("--volume: {}: {problem}", path.display()))
@@ -147,22 +142,9 @@ fn made(volume: Volume, scale: Option<f32>) -> Result<Medium, CommandError> {
     Ok(medium)
 }
 
-fn voxels(flags: &Options, sides: [f32; 3]) -> [u32; 3] {
-    let longest = sides.into_iter().fold(0.0, f32::max);
-    let count = flags.voxels.unwrap_or(160) as f32;
-    sides.map(|side| (count * side / longest).round() as u32)
-}
-
 /// The box around all voxels of more than `share`.
 fn occupied(volume: &Volume, share: f32) -> Bounds {
-    let [width, height, _] = volume.size.map(|side| side as usize);
-    let mut least = Vec3::INFINITY;
-    let mut greatest = Vec3::NEG_INFINITY;
-    for (i, _) in volume.values.iter().enumerate().filter(|(_, value)| **value > share) {
-        let voxel = Vec3::from([i % width, i / width % height, i / width / height].map(|at| at as f32));
-        least = least.min(voxel);
-        greatest = greatest.max(voxel);
-    }
+    let Some([least, greatest]) = volume.occupied_voxels(share) else { return volume.bounds() };
     // Between voxels their neighbours are read.
     let sides = Vec3::from(volume.size.map(|side| side as f32));
     let (least, greatest) = ((least - 0.5).max(Vec3::ZERO) / sides, (greatest + 1.5).min(sides) / sides);

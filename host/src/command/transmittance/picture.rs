@@ -6,7 +6,8 @@ use super::framing::Framing;
 use super::medium::{Matter, Medium, described};
 use crate::command::CommandError;
 use crate::command::scattering::Buffers;
-use crate::core::{Bricks, Drawing, Raster, Sky, VolumeTexture};
+use crate::command::sky::behind;
+use crate::core::{Bricks, VolumeTexture};
 use crate::data::{Particles, Volume};
 use crate::formats::{Array, ArrayData};
 use crate::scattering::check_size;
@@ -15,14 +16,6 @@ use crate::transmittance::{
     Splat, SplatFixed, TransmittanceMap, VolumePicture, Voxels,
 };
 use crate::{Buffer, Gpu, Shaders, Texture};
-use glam::Vec3;
-
-/// A clear afternoon.
-const ZENITH: Vec3 = Vec3::new(0.025, 0.075, 0.25);
-/// Its haze.
-const HORIZON: Vec3 = Vec3::new(0.18, 0.26, 0.38);
-/// What lies below, in haze too.
-const GROUND: Vec3 = Vec3::new(0.1, 0.14, 0.19);
 
 /// What was drawn.
 pub struct Drawn {
@@ -46,21 +39,7 @@ pub fn draw(
 ) -> Result<Drawn, CommandError> {
     check_size(gpu, "a picture", flags.size)?;
     let studio = Studio { gpu, shaders, flags, framing };
-    let sky = match flags.background {
-        None => Sky::new(ZENITH, HORIZON, GROUND),
-        Some(colour) => Sky::new(colour, colour, colour),
-    };
-    let drawing = Drawing {
-        camera: &framing.camera,
-        light: &framing.light,
-        sky: &sky,
-        meshes: &[],
-        shadow_map: [1, 1],
-        views: None,
-        light_texture: None,
-        samples: 1,
-    };
-    let behind = Raster::new(gpu, shaders)?.draw(gpu, &drawing)?;
+    let behind = behind((gpu, shaders), &framing.camera, &framing.light, flags.background)?;
     let [camera, lighting] = [Buffer::uniform(gpu, &framing.camera), Buffer::uniform(gpu, &framing.lighting)];
     let view = MediumView { camera: &camera, lighting: &lighting, depth: &behind.depth };
     let mut buffers = Buffers::default();

@@ -5,12 +5,11 @@ use super::super::studio::Studio;
 use super::Motif;
 use crate::Texture;
 use crate::command::CommandError;
-use crate::core::{Camera, DepthRange, Jitter, PerspectiveView, Transfer};
+use crate::core::{Camera, DepthRange, Jitter, PerspectiveView, TRANSFERS, Transfer, parse_transfer};
 use crate::data::Volume;
 use crate::painterly::{
     Brushes, Canvas, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoVolume, PainterlyStyle,
-    Painting, PaintingFrame, PaintingSettings, STYLES, Stroke, StrokeSettings, SurfaceLighting, TRANSFERS,
-    parse_style, parse_transfer,
+    Painting, PaintingFrame, PaintingSettings, STYLES, Stroke, StrokeSettings, SurfaceLighting, parse_style,
 };
 use glam::Vec3;
 

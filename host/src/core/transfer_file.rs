@@ -1,17 +1,36 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Transfer functions of volumes as TOML files.
 
-use super::{PainterlyError, toml_file};
-use crate::core::{Transfer, TransferPoint, entry};
+use super::{Transfer, TransferError, TransferPoint, entry};
 use crate::data::linear_from_hexadecimal;
+use crate::formats::{TomlFileError, parse_toml, read_toml};
 use crate::gpu::Gpu;
 use glam::Vec3;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Why a file says no transfer function.
+#[derive(Debug, thiserror::Error)]
+pub enum TransferFileError {
+    /// It cannot be read, or is no such file.
+    #[error("the transfer function {0}")]
+    File(#[from] TomlFileError),
+    /// What it says.
+    #[error("the transfer function {path}: {reason}")]
+    Impossible {
+        /// The file.
+        path: PathBuf,
+        /// What is impossible.
+        reason: String,
+    },
+}
 
 /// The transfer functions that come with Airlight: names and texts.
-pub const TRANSFERS: [(&str, &str); 2] = [
-    ("head", include_str!("../../styles/painterly/transfers/head.toml")),
-    ("stent", include_str!("../../styles/painterly/transfers/stent.toml")),
+pub const TRANSFERS: [(&str, &str); 5] = [
+    ("head", include_str!("../../styles/transfers/head.toml")),
+    ("stent", include_str!("../../styles/transfers/stent.toml")),
+    ("cloud", include_str!("../../styles/transfers/cloud.toml")),
+    ("smoke", include_str!("../../styles/transfers/smoke.toml")),
+    ("vessels", include_str!("../../styles/transfers/vessels.toml")),
 ];
 /// Entries of a table.
 const ENTRIES: usize = 1024;
@@ -30,8 +49,25 @@ impl TransferFunction {
     ///
     /// # Errors
     /// As [`Transfer::of_points`].
-    pub fn upload(&self, gpu: &Gpu) -> Result<Transfer, PainterlyError> {
-        Ok(Transfer::of_points(gpu, &self.points, ENTRIES)?)
+    pub fn upload(&self, gpu: &Gpu) -> Result<Transfer, TransferError> {
+        Transfer::of_points(gpu, &self.points, ENTRIES)
+    }
+
+    /// The same with colours times a factor, linear RGB.
+    #[must_use]
+    pub fn tinted(mut self, factor: Vec3) -> Self {
+        self.points.iter_mut().for_each(|point| point.color *= factor);
+        self
+    }
+
+    /// The greatest value, 0..1 of the range, below which and at which nothing is opaque; 0 where all is.
+    pub fn transparent_below(&self) -> f32 {
+        let first = self.points.iter().position(|point| point.opacity > 0.0);
+        match first {
+            Some(first) if first > 0 => self.points[first - 1].value,
+            Some(_) => 0.0,
+            None => 1.0,
+        }
     }
 
     /// Opacity of a value 0..1 of the range; 0 without points.
@@ -74,20 +110,20 @@ enum Color {
 /// `color` as `"#rrggbb"` in sRGB or `[r, g, b]` in linear light, and `opacity`.
 ///
 /// # Errors
-/// [`PainterlyError::File`] with line and column; [`PainterlyError::Transfer`].
-pub fn read_transfer(path: impl AsRef<Path>) -> Result<TransferFunction, PainterlyError> {
+/// [`TransferFileError::File`] with line and column; [`TransferFileError::Impossible`].
+pub fn read_transfer(path: impl AsRef<Path>) -> Result<TransferFunction, TransferFileError> {
     let path = path.as_ref();
-    parse_transfer(path, &toml_file::read(path)?)
+    parse_transfer(path, &read_toml(path)?)
 }
 
 /// Like [`read_transfer`] for a text. `path`: where it lies, for errors.
 ///
 /// # Errors
 /// As [`read_transfer`].
-pub fn parse_transfer(path: impl AsRef<Path>, text: &str) -> Result<TransferFunction, PainterlyError> {
+pub fn parse_transfer(path: impl AsRef<Path>, text: &str) -> Result<TransferFunction, TransferFileError> {
     let path = path.as_ref();
-    let File { range, point } = toml_file::parse(path, text)?;
-    let wrong = |reason: String| PainterlyError::Transfer { path: path.to_owned(), reason };
+    let File { range, point } = parse_toml(path, text)?;
+    let wrong = |reason: String| TransferFileError::Impossible { path: path.to_owned(), reason };
     let [low, high] = range.unwrap_or([0.0, 1.0]);
     if !(low.is_finite() && high.is_finite() && high > low) {
         return Err(wrong(format!("a range from {low} to {high} is impossible: it must rise and be finite")));
@@ -132,7 +168,9 @@ mod tests {
     fn files_say_ranges_and_points() {
         for (name, text) in TRANSFERS {
             let function = parse_transfer(name, text).unwrap();
-            assert!(function.points.len() > 1 && function.range.is_some(), "{name}");
+            assert!(function.points.len() > 1, "{name}");
+            let scan = ["head", "stent", "vessels"].contains(&name);
+            assert_eq!(function.range.is_some(), scan, "{name}");
         }
         let text = "range = [100, 300]\n[[point]]\nvalue = 150\ncolor = [1, 2, 0.5]\nopacity = 0.25\n";
         let function = parse_transfer("f.toml", text).unwrap();
@@ -152,6 +190,18 @@ mod tests {
         }
         let none = TransferFunction { range: None, points: Vec::new() };
         assert_eq!((none.opacity(0.5), none.greatest_opacity(0.0, 1.0)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn where_opacity_begins_is_known() {
+        let point = |value, opacity| TransferPoint { value, color: Vec3::ONE, opacity };
+        let begins = |points: &[TransferPoint]| {
+            TransferFunction { range: None, points: points.to_vec() }.transparent_below()
+        };
+        assert_eq!(begins(&[point(0.1, 0.0), point(0.25, 0.0), point(0.5, 1.0), point(0.75, 0.0)]), 0.25);
+        assert_eq!(begins(&[point(0.0, 0.0), point(1.0, 1.0)]), 0.0);
+        assert_eq!(begins(&[point(0.3, 0.5), point(1.0, 1.0)]), 0.0);
+        assert_eq!((begins(&[point(0.3, 0.0)]), begins(&[])), (1.0, 1.0));
     }
 
     #[test]

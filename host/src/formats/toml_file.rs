@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! TOML files of this system, and what can be wrong with them.
+//! TOML files, and what can be wrong with them.
 
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -29,13 +29,20 @@ pub enum TomlFileError {
     },
 }
 
-pub(super) fn read(path: &Path) -> Result<String, TomlFileError> {
+/// Reads a file.
+///
+/// # Errors
+/// [`TomlFileError::Unreadable`].
+pub(crate) fn read_toml(path: &Path) -> Result<String, TomlFileError> {
     std::fs::read_to_string(path)
         .map_err(|source| TomlFileError::Unreadable { path: path.to_owned(), source })
 }
 
-/// `path`: where the text lies.
-pub(super) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, TomlFileError> {
+/// Reads a text. `path`: where it lies.
+///
+/// # Errors
+/// [`TomlFileError::Wrong`].
+pub(crate) fn parse_toml<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, TomlFileError> {
     toml::from_str(text).map_err(|error| {
         let at = error.span().map_or(0, |span| span.start);
         let before = text.get(..at).unwrap_or(text);
