@@ -65,8 +65,8 @@ impl SoftSchedule {
     /// (r - a) / (b - r) = (q - a) / (q - b) at place q. A layer that was opened by itself has the reference of its sheet.
     ///
     /// From place q to q' a layer needs the variance spread^2 ((q' - r)^2 - (q - r)^2). Taps are half of a standard deviation of the
-    /// least blurred sheet of the layer apart, and at least a texel. What is more than 16 squares of that distance is left to
-    /// the next sheet.
+    /// least blurred sheet of the layer apart, rounded down, and at least a texel; up to a whole one where 16 squares of that distance
+    /// are too few. What is more than 16 squares even so is left to the next sheet.
     pub fn new(places: &[f64], spread: [f64; 2]) -> Self {
         let mut layers = [Layer::default(); SOFT_LAYERS];
         // Slots by age, oldest first.
@@ -109,7 +109,9 @@ impl Layer {
         for axis in 0..2 {
             let grown = (next - self.reference).powi(2) - (now - self.reference).powi(2);
             self.owed[axis] += spread[axis].powi(2) * grown;
-            let distance = (0.5 * self.given[axis].sqrt()).floor().clamp(1.0, 65536.0);
+            let smooth = self.given[axis].sqrt();
+            let needed = (self.owed[axis].max(0.0) / MOST_VARIANCE).sqrt().ceil().min(smooth.floor());
+            let distance = (0.5 * smooth).floor().max(needed).clamp(1.0, 65536.0);
             let variance = self.owed[axis].clamp(0.0, MOST_VARIANCE * distance * distance);
             self.owed[axis] -= variance;
             self.given[axis] += variance;
@@ -149,7 +151,7 @@ mod tests {
                         let step = f64::from(blur.distance[axis]);
                         assert!(blur.variance[axis] >= 0.0 && blur.variance[axis] <= 16.0);
                         // Content is smoother than the taps are apart.
-                        assert!(step <= 1.0 || step <= 0.5001 * variance[*occluder][axis].sqrt());
+                        assert!(step <= 1.0 || step <= 1.0001 * variance[*occluder][axis].sqrt());
                         variance[*occluder][axis] += f64::from(blur.variance[axis]) * step * step;
                     }
                 }
