@@ -201,7 +201,9 @@ impl From<SplattingError> for CommandError {
             E::Setting { name: "free path", .. } => "--free-path",
             E::Setting { name: "number of sweeps", .. } => "--sweeps",
             E::Setting { name: "size of the light", .. } => "--light",
-            E::Setting { name: "texels of a soft shadow buffer", .. } | E::LightBuffer { .. } => "--light-size",
+            E::Setting { name: "texels of a soft shadow buffer", .. } | E::LightBuffer { .. } => {
+                "--light-size"
+            }
             E::LightInside(_) | E::LightTooNear(_) | E::LightBehind { .. } => "--light",
             E::NoPolygons => "--mesh",
             E::Light(error) => return StageError::Light(error.clone()).into(),
