@@ -106,9 +106,9 @@ fn merge(layers: &mut [Layer; SOFT_LAYERS], order: &mut Vec<usize>, now: f64) ->
 impl Layer {
     fn blur(&mut self, now: f64, next: f64, spread: [f64; 2]) -> LayerBlur {
         let mut blur = LayerBlur::NONE;
-        for axis in 0..2 {
+        for (axis, spread) in spread.into_iter().enumerate() {
             let grown = (next - self.reference).powi(2) - (now - self.reference).powi(2);
-            self.owed[axis] += spread[axis].powi(2) * grown;
+            self.owed[axis] += spread.powi(2) * grown;
             let smooth = self.given[axis].sqrt();
             let needed = (self.owed[axis].max(0.0) / MOST_VARIANCE).sqrt().ceil().min(smooth.floor());
             let distance = (0.5 * smooth).floor().max(needed).clamp(1.0, 65536.0);
