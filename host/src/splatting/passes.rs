@@ -22,7 +22,10 @@ pub(super) fn rows_of_groups(groups: u32) -> [u32; 3] {
 }
 
 pub(super) struct Passes {
+    /// Splats as the eye sees them.
     pub(super) splat: Pass,
+    /// Splats as the light sees them.
+    pub(super) light_splat: Pass,
     pub(super) composite: Pass,
 }
 
@@ -42,8 +45,11 @@ impl Passes {
         let composed = |pass: &str, definitions: &Definitions| {
             shaders.compose_with(pass, definitions).map_err(PassError::from)
         };
-        let splat = flags(&[("SCANNING", settings.scanning), ("POLYGONS", polygons)]);
-        let splat = composed("splatting/splat_sheet", &splat)?;
+        let spread = polygons && settings.transport != LightTransport::Direct;
+        let splat = |cut| {
+            let flags = flags(&[("SCANNING", settings.scanning), ("POLYGONS", cut)]);
+            composed("splatting/splat_sheet", &flags)
+        };
         let stages = RenderStages {
             vertex: "vertex_splat",
             fragment: Some("fragment_splat"),
@@ -61,10 +67,12 @@ impl Passes {
             ("SCATTERING", scattering),
             ("BACK", back),
             ("POLYGONS", polygons),
-            ("SPREAD", polygons && settings.transport != LightTransport::Direct),
+            ("SPREAD", spread),
         ]);
         Ok(Self {
-            splat: Pass::additive(gpu, &splat, &stages, 1)?,
+            splat: Pass::additive(gpu, &splat(polygons)?, &stages, 1)?,
+            // What light gets behind surfaces goes on through the medium there.
+            light_splat: Pass::additive(gpu, &splat(polygons && !spread)?, &stages, 1)?,
             composite: Pass::compute_with(gpu, shaders, "splatting/composite_sheet", &composite)?,
         })
     }

@@ -109,10 +109,10 @@ impl<'a> SheetPicture<'a> {
             SurfacePictures::new(gpu, shaders, surfaces, buffers, [size, settings.light_size], far)
         });
         let surfaces = surfaces.transpose()?;
-        let means =
-            |camera, heights| Means::new(gpu, &passes.splat, &order, camera, sheets, &numbers, heights);
-        let eye = means(buffers[0], surfaces.as_ref().map(SurfacePictures::eye_heights))?;
-        let light = means(buffers[1], surfaces.as_ref().map(SurfacePictures::light_heights))?;
+        let means = |pass, camera, heights| Means::new(gpu, pass, &order, camera, sheets, &numbers, heights);
+        let eye = means(&passes.splat, buffers[0], surfaces.as_ref().map(SurfacePictures::eye_heights))?;
+        let heights = surfaces.as_ref().map(SurfacePictures::light_heights);
+        let light = means(&passes.light_splat, buffers[1], heights)?;
         let means = [0; 3].map(|_| Texture::target(gpu, size, MEANS));
         let sum = Buffer::storage(gpu, 16 * u64::from(size[0]) * u64::from(size[1]));
         let spread = polygons && settings.transport != LightTransport::Direct;
@@ -236,7 +236,7 @@ impl<'a> SheetPicture<'a> {
     /// # Errors
     /// [`SplattingError`].
     pub fn record(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), SplattingError> {
-        let Passes { splat, composite } = &self.passes;
+        let Passes { splat, light_splat, composite } = &self.passes;
         let order = &self.order;
         order.record(gpu, encoder)?;
         if let Some(surfaces) = &self.surfaces {
@@ -245,7 +245,8 @@ impl<'a> SheetPicture<'a> {
         for buffer in std::iter::once(&self.sum).chain(&self.surface_light) {
             encoder.clear_buffer(&buffer.raw, 0, None);
         }
-        let light_sheets = LightSheets { pass: splat, order, means: &self.light, target: &self.light_means };
+        let light_sheets =
+            LightSheets { pass: light_splat, order, means: &self.light, target: &self.light_means };
         self.path.begin(encoder, &light_sheets)?;
         begin_clear(encoder, &self.means[2]);
         let draw = |encoder: &mut wgpu::CommandEncoder, index: u32| {

@@ -4,7 +4,7 @@
 use super::splatting_scenes::{ERROR, Scene};
 use super::{Quality, Row, Work, figure, interleaved, median, ratio, time};
 use crate::command::{CommandError, progress};
-use crate::splatting::{LightTransport, SheetPicture, SheetSettings};
+use crate::splatting::{LightTransport, ScatteringSettings, SheetPicture, SheetSettings};
 use crate::{Gpu, Shaders};
 
 /// Name of the system in its rows.
@@ -12,7 +12,10 @@ pub(super) const SYSTEM: &str = "splatting";
 /// Samples of each piece of work.
 const SAMPLES: usize = 5;
 /// Ways of light whose frames are measured over one of direct light, by the name of the row.
-const TRANSPORTS: [(&str, LightTransport); 0] = [];
+const TRANSPORTS: [(&str, LightTransport); 1] = [(
+    "forward_scatter_overhead",
+    LightTransport::Scattering(ScatteringSettings { cone: 60.0, free_path: 0.5, back: false, sweeps: 1 }),
+)];
 
 /// Every named figure.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {

@@ -9,6 +9,7 @@ mod page;
 mod painterly;
 mod plate;
 mod plates;
+mod splatting;
 mod studio;
 mod stylize;
 mod transmittance;
@@ -51,6 +52,8 @@ enum Subject {
     Transmittance(&'static str),
     /// Scans in brush strokes.
     Painterly(&'static str),
+    /// Volumes and meshes in sheets of splats.
+    Splatting(&'static str),
 }
 
 /// What is shown of light shafts where nothing is chosen.
@@ -72,7 +75,9 @@ fn all() -> Vec<Subject> {
     let scattering = SCATTERING.into_iter();
     let stylize = stylize::NAMES.map(Subject::Stylize);
     let transmittance = transmittance::NAMES.map(Subject::Transmittance);
-    scattering.chain(stylize).chain(transmittance).chain(painterly::NAMES.map(Subject::Painterly)).collect()
+    let painterly = painterly::NAMES.map(Subject::Painterly);
+    let splatting = splatting::NAMES.map(Subject::Splatting);
+    scattering.chain(stylize).chain(transmittance).chain(painterly).chain(splatting).collect()
 }
 
 /// Runs the command.
@@ -93,6 +98,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
             Subject::Stylize(name) => stylize::section(&studio, &subject.folder(), name),
             Subject::Transmittance(name) => transmittance::section(&studio, &subject.folder(), name),
             Subject::Painterly(name) => painterly::section(&studio, &subject.folder(), name),
+            Subject::Splatting(name) => splatting::section(&studio, &subject.folder(), name),
         };
         sections.push(section?);
         bar.inc(1);
@@ -113,6 +119,7 @@ impl Subject {
             Self::Stylize(_) => "stylize",
             Self::Transmittance(_) => "transmittance",
             Self::Painterly(_) => "painterly",
+            Self::Splatting(_) => "splatting",
             _ => "scattering",
         }
     }
@@ -120,9 +127,11 @@ impl Subject {
     /// Its name, as in `--only scattering/NAME`; sheets of several scenes share one.
     fn name(self) -> &'static str {
         match self {
-            Self::Scene(name) | Self::Stylize(name) | Self::Transmittance(name) | Self::Painterly(name) => {
-                name
-            }
+            Self::Scene(name)
+            | Self::Stylize(name)
+            | Self::Transmittance(name)
+            | Self::Painterly(name)
+            | Self::Splatting(name) => name,
             Self::Methods(_) => "methods",
             Self::Epipole => "epipole",
             Self::Lights => "lights",
@@ -161,8 +170,8 @@ fn choose(only: Option<&str>) -> Result<Vec<Subject>, CommandError> {
     let mut known: Vec<String> = subjects.into_iter().map(Subject::path).collect();
     known.dedup();
     let known = known.join(", ");
-    let reason =
-        format!("there is no `{only}`; there is scattering, stylize, transmittance, painterly, {known}");
+    let systems = "scattering, stylize, transmittance, painterly, splatting";
+    let reason = format!("there is no `{only}`; there is {systems}, {known}");
     Err(CommandError::misuse("--only", reason))
 }
 
@@ -181,7 +190,9 @@ mod tests {
         assert_eq!(transmittance.len(), transmittance::NAMES.len());
         let painterly = choose(Some("painterly")).unwrap();
         assert_eq!(painterly.len(), painterly::NAMES.len());
-        assert_eq!([&SCATTERING[..], &stylize, &transmittance, &painterly].concat(), all());
+        let splatting = choose(Some("splatting")).unwrap();
+        assert_eq!(splatting.len(), splatting::NAMES.len());
+        assert_eq!([&SCATTERING[..], &stylize, &transmittance, &painterly, &splatting].concat(), all());
         for subject in all() {
             assert!(choose(Some(&subject.path())).unwrap().contains(&subject));
             assert_eq!(choose(Some(&subject.folder())).unwrap(), [subject]);

@@ -25,7 +25,7 @@ impl SheetPicture<'_> {
     /// Records the splats of all sheets as the light sees them. The sort must have run.
     pub(crate) fn record_light_splats(&self, encoder: &mut wgpu::CommandEncoder) {
         for index in 0..self.settings.count {
-            self.light.record(encoder, &self.passes.splat, &self.order, index, &self.light_means);
+            self.light.record(encoder, &self.passes.light_splat, &self.order, index, &self.light_means);
         }
     }
 
