@@ -59,7 +59,7 @@ impl Scene {
         volume.world_from_unit = Mat4::from_translation(-0.5 * sides) * Mat4::from_scale(sides);
         volume.values.iter_mut().for_each(|value| *value /= 32.0);
         let threshold = 3.0 / 32.0;
-        Ok(Self { volume, threshold, ramp: [threshold, 0.5], extinction: 40.0, size: [256; 2], sheets: 128 })
+        Ok(Self { volume, threshold, ramp: [threshold, 0.5], extinction: 40.0, size: [256; 2], sheets: 64 })
     }
 
     /// The same picture with every voxel drawn: what was left out has the least value that a half float holds.
