@@ -158,7 +158,7 @@ impl Scene {
         let albedo = ALBEDO.map(f64::from);
         let medium =
             Medium { albedo: [albedo; 2], extinction: f64::from(self.extinction), ambient: [0.0; 3], g: 0.0 };
-        let towards = -self.light()?.direction.as_dvec3().normalize();
+        let towards = self.light()?.direction.as_dvec3().normalize();
         let towards = linear::Vec3::from(towards.to_array());
         let scene = ReferenceScene {
             field: &Ramp { matter: &field, values: self.ramp.map(f64::from) },
@@ -244,6 +244,23 @@ mod tests {
         assert!((mean(&coarse) / mean(&fine) - 1.0).abs() < 0.05, "{} {}", mean(&coarse), mean(&fine));
         let (coarse, fine) = (coarse.occupied(), fine.occupied());
         assert!((coarse / fine - 1.0).abs() < 0.2 && fine > 0.01, "{coarse} {fine}");
+    }
+
+    #[test]
+    fn pictures_are_what_rays_make_of_them() {
+        let gpu = pollster::block_on(Gpu::new()).unwrap();
+        let shaders = Shaders::builtin();
+        let mut scene = Scene::cloud(32).unwrap();
+        scene.sheets = 64;
+        let splats = scene.splats(&gpu, &shaders).unwrap();
+        let picture = scene.picture(&gpu, &shaders, &splats, scene.settings()).unwrap();
+        let mut encoder = gpu.encoder();
+        picture.record(&gpu, &mut encoder).unwrap();
+        gpu.submit(encoder).unwrap();
+        let exact = scene.exact().unwrap();
+        assert!(exact.iter().any(|radiance| *radiance > 0.05));
+        let error = scene.error(&gpu, &picture, &exact).unwrap();
+        assert!(error < 0.03, "{error}");
     }
 
     #[test]
