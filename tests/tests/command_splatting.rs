@@ -259,6 +259,51 @@ fn every_flag_changes_the_picture() {
 }
 
 #[test]
+fn meshes_and_light_that_spreads_are_in_the_picture() {
+    let at = folder();
+    let at = at.path();
+    // A square of 2 m across the middle of the cloud.
+    let corners = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 3 2\nf 1 4 3\n";
+    std::fs::write(at.join("square.obj"), corners).unwrap();
+    let run = |flags: &str| Run::new(at, &format!("{CLOUD} --light-size 64 {flags}"));
+    let mean = |run: &Run| {
+        let all = run.radiance();
+        all.iter().sum::<f32>() / all.len() as f32
+    };
+    let [none, forward, back, sweeps] = ["", "--forward", "--back", "--back --sweeps 4"].map(run);
+    let means = [&none, &forward, &back, &sweeps].map(mean);
+    println!("none, forward, back, four sweeps: {means:?}");
+    assert!(means.windows(2).all(|pair| pair[1] > 1.001 * pair[0]), "{means:?}");
+    // Light does not change what is seen through.
+    assert!(none.through() == sweeps.through());
+    for [cone, path] in [["20", "0.1"], ["80", "1"]] {
+        let other = run(&format!("--forward --cone {cone} --free-path {path}"));
+        assert!(mean(&other) > mean(&none) && mean(&other) != mean(&forward));
+    }
+    for light in ["directional:70,60", "point:5,9,4"] {
+        let area = match light {
+            "point:5,9,4" => "area:5,9,4,2",
+            _ => "area:70,60,20",
+        };
+        for flags in ["", "--forward", "--back"] {
+            let mesh = run(&format!("--light {light} {flags} --mesh square.obj"));
+            let opaque = mesh.through().iter().filter(|through| **through == 0.0).count();
+            assert!((20..800).contains(&opaque), "{light} {flags}: {opaque}");
+            let far = run(&format!("--light {light} {flags} --mesh square.obj@0,50,0"));
+            assert!(far.through().iter().all(|through| *through > 0.0), "{light} {flags}");
+        }
+        let hard = run(&format!("--light {light} --mesh square.obj@0,2,0"));
+        let soft = run(&format!("--light {area} --soft --mesh square.obj@0,2,0"));
+        let differ = relative_rmse(
+            &soft.radiance(),
+            &hard.radiance().iter().map(|x| f64::from(*x)).collect::<Vec<_>>(),
+        );
+        println!("{area}: {differ}");
+        assert!((0.005..0.5).contains(&differ), "{area}: {differ}");
+    }
+}
+
+#[test]
 fn exposure_is_of_png_and_quiet_says_nothing() {
     let at = folder();
     let run = |flags: &str| {

@@ -143,18 +143,17 @@ fn flags_that_cannot_be_meant_together_are_refused() {
     bad("--height 3", &["--height", "--camera orthographic"]);
 }
 
-/// What is to come.
 #[test]
-fn what_is_not_there_yet_is_said() {
+fn what_light_that_spreads_cannot_have_is_refused() {
     let at = folder();
     let at = at.path();
-    std::fs::write(at.join("t.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    for (flags, flag) in [
-        ("--forward", "--forward"),
-        ("--back --sweeps 2", "--back"),
-        ("--soft --light area:10,20,3", "--soft"),
-        ("--mesh t.obj", "--mesh"),
-    ] {
-        refused(at, &format!("{CLOUD} {flags}"), 1, &[flag, "not there yet"]);
+    std::fs::write(at.join("t.png"), "none").unwrap();
+    for flags in ["--forward", "--back", "--soft --light area:10,20,3"] {
+        refused(
+            at,
+            &format!("{CLOUD} --light-texture t.png {flags}"),
+            2,
+            &["--light-texture", "leave it out"],
+        );
     }
 }
