@@ -37,7 +37,7 @@ fn room() -> Vec<Mesh> {
 
 /// A desk in a smoky room, lit through the window behind it.
 pub fn smoke(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
-    let (volume, greatest) = normalised(smoke_volume([112, 84, 112], 3));
+    let (volume, greatest) = normalised(smoke_volume([80, 60, 80], 3));
     let mut meshes = room();
     meshes.push(desk().transformed(Mat4::from_rotation_translation(
         Quat::from_rotation_y(0.35),
@@ -57,7 +57,7 @@ pub fn smoke(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         },
         shading: Shading::Scattering,
         sheets: 128,
-        light_size: 768,
+        light_size: 512,
         view: (Vec3::new(-1.2, 1.5, 4.6), Vec3::new(0.0, 1.3, -0.8), 38.0),
         background: Some(Vec3::new(0.8, 1.0, 1.25)),
         exposure: 1.0,
@@ -89,7 +89,7 @@ fn rose() -> LightImage {
 
 /// A projector's slide in smoke, on a wall.
 pub fn slide(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
-    let (volume, greatest) = normalised(smoke_volume([112, 84, 112], 8));
+    let (volume, greatest) = normalised(smoke_volume([80, 60, 80], 8));
     let white = Vec3::splat(0.7);
     let still = Still {
         volumes: vec![volume],
@@ -116,7 +116,7 @@ pub fn slide(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         },
         shading: Shading::Scattering,
         sheets: 128,
-        light_size: 768,
+        light_size: 512,
         view: (Vec3::new(-2.2, 1.7, 5.6), Vec3::new(0.1, 1.3, -1.0), 38.0),
         background: Some(Vec3::splat(0.004)),
         exposure: 1.0,

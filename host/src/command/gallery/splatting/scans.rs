@@ -100,7 +100,7 @@ pub fn mushrooms(studio: &Studio, folder: &str) -> Result<Section, CommandError>
         },
         shading: Shading::Phong,
         sheets: 128,
-        light_size: 768,
+        light_size: 512,
         view: (Vec3::new(0.5, 1.7, 3.4), Vec3::new(0.05, 0.32, 0.0), 36.0),
         background: Some(Vec3::new(0.09, 0.1, 0.12)),
         exposure: 1.0,
