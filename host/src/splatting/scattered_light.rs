@@ -93,7 +93,7 @@ impl ScatteredLight {
         settings.check()?;
         let texels = u64::from(width) * u64::from(height);
         let row_bytes = 16 * texels * if settings.back { 2 } else { 1 };
-        let limit = gpu.limits.max_storage_buffer_binding_size as u64;
+        let limit = gpu.limits.max_storage_buffer_binding_size;
         if row_bytes > limit {
             let (sheets, size) = (numbers.len(), [width, height]);
             return Err(SplattingError::LightBuffer { size, sheets, bytes: row_bytes, limit });

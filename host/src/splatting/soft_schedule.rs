@@ -147,12 +147,12 @@ mod tests {
             held[merge.open as usize].push(sheet);
             for (sheets, blur) in held.iter().zip(&schedule.blurs[SOFT_LAYERS * sheet..]) {
                 for occluder in sheets {
-                    for axis in 0..2 {
+                    for (axis, own) in variance[*occluder].iter_mut().enumerate() {
                         let step = f64::from(blur.distance[axis]);
                         assert!(blur.variance[axis] >= 0.0 && blur.variance[axis] <= 16.0);
                         // Content is smoother than the taps are apart.
-                        assert!(step <= 1.0 || step <= 1.0001 * variance[*occluder][axis].sqrt());
-                        variance[*occluder][axis] += f64::from(blur.variance[axis]) * step * step;
+                        assert!(step <= 1.0 || step <= 1.0001 * own.sqrt());
+                        *own += f64::from(blur.variance[axis]) * step * step;
                     }
                 }
             }
