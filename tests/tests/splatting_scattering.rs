@@ -27,6 +27,7 @@ use gpu::{Probe, Random, gpu, shaders};
 use light_stack::{LightStack, StackLight};
 use probing::{f, hold, worst};
 use sheets::{colored, metres, shoot, splats};
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_6};
 use std::f64::consts::PI;
 
 /// Integral over a cone, by Simpson's rule over the angle; finer where phase functions peak.
@@ -45,7 +46,7 @@ fn over_cone(g: f64, cone: f64, value: impl Fn(f64) -> f64) -> f64 {
     (0..=STEPS).map(|i| weight(i) * at(i)).sum::<f64>() / (3.0 * f64::from(STEPS))
 }
 
-const CONES: [f32; 6] = [0.02, 0.5236, 1.0472, 1.5708, 2.4, 3.1415925];
+const CONES: [f32; 6] = [0.02, FRAC_PI_6, FRAC_PI_3, FRAC_PI_2, 2.4, 3.141];
 const MEANS: [f32; 9] = [-0.95, -0.6, -0.01, -1e-6, 0.0, 1e-4, 0.3, 0.85, 0.97];
 
 #[test]
