@@ -17,8 +17,8 @@ mod soft;
 use airlight::core::{Camera, DepthRange, Light, OrthographicView};
 use airlight::data::cloud;
 use airlight::splatting::{
-    LightTransport, SheetFrame, SheetLighting, SheetPicture, SheetSettings, SoftPlane, SoftShadows, Splats,
-    SplattingError,
+    LightTransport, SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings, SoftPlane,
+    SoftShadows, Splats, SplattingError,
 };
 use airlight_tests::reference::splatting::Kernel;
 use airlight_tests::reference::splatting::area_light::{Square, meets_ball};
@@ -220,9 +220,8 @@ fn a_slab_of_splats_has_the_same_penumbra() {
                     let lighting = SheetLighting::new(thick);
                     let frame = SheetFrame { camera: parallel(view, 30.0, 8), light, lighting };
                     let size = [8; 2];
-                    let all = std::slice::from_ref(&splats);
-                    let picture =
-                        SheetPicture::new(gpu(), shaders(), all, &transfer, settings, size).unwrap();
+                    let inputs = SheetInputs::new(std::slice::from_ref(&splats), &transfer);
+                    let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, size).unwrap();
                     let sheets = picture.set(gpu(), &frame).unwrap();
                     let mut encoder = gpu().encoder();
                     picture.record(gpu(), &mut encoder).unwrap();
@@ -421,7 +420,8 @@ fn impossible_lights_are_refused() {
         let transport = LightTransport::Soft(soft);
         let settings =
             SheetSettings { count: 8, light_size: [side; 2], transport, ..SheetSettings::default() };
-        SheetPicture::new(gpu(), shaders(), std::slice::from_ref(&splats), &transfer, settings, [8; 2])
+        let inputs = SheetInputs::new(std::slice::from_ref(&splats), &transfer);
+        SheetPicture::new(gpu(), shaders(), inputs, settings, [8; 2])
     };
     let set = |soft: SoftShadows, light: Light| {
         let frame =
