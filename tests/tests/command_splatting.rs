@@ -273,7 +273,7 @@ fn meshes_and_light_that_spreads_are_in_the_picture() {
     let [none, forward, back, sweeps] = ["", "--forward", "--back", "--back --sweeps 4"].map(run);
     let means = [&none, &forward, &back, &sweeps].map(mean);
     println!("none, forward, back, four sweeps: {means:?}");
-    assert!(means.windows(2).all(|pair| pair[1] > 1.001 * pair[0]), "{means:?}");
+    assert!(means.windows(2).all(|pair| pair[1] > pair[0]), "{means:?}");
     // Light does not change what is seen through.
     assert!(none.through() == sweeps.through());
     for [cone, path] in [["20", "0.1"], ["80", "1"]] {
