@@ -46,7 +46,7 @@ fn over_cone(g: f64, cone: f64, value: impl Fn(f64) -> f64) -> f64 {
     (0..=STEPS).map(|i| weight(i) * at(i)).sum::<f64>() / (3.0 * f64::from(STEPS))
 }
 
-const CONES: [f32; 6] = [0.02, FRAC_PI_6, FRAC_PI_3, FRAC_PI_2, 2.4, 3.13];
+const CONES: [f32; 6] = [0.02, FRAC_PI_6, FRAC_PI_3, FRAC_PI_2, 2.4, 3.1415925];
 const MEANS: [f32; 9] = [-0.95, -0.6, -0.01, -1e-6, 0.0, 1e-4, 0.3, 0.85, 0.97];
 
 #[test]
