@@ -262,8 +262,8 @@ fn every_flag_changes_the_picture() {
 fn meshes_and_light_that_spreads_are_in_the_picture() {
     let at = folder();
     let at = at.path();
-    // A square of 2 m across the middle of the cloud.
-    let corners = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 3 2\nf 1 4 3\n";
+    // A square of 2 m in the middle of the cloud, that leans towards eye and light.
+    let corners = "v -1 -0.7 0.7\nv 1 -0.7 0.7\nv 1 0.7 -0.7\nv -1 0.7 -0.7\nf 1 2 3\nf 1 3 4\n";
     std::fs::write(at.join("square.obj"), corners).unwrap();
     let run = |flags: &str| Run::new(at, &format!("{CLOUD} --light-size 64 {flags}"));
     let mean = |run: &Run| {
@@ -275,7 +275,7 @@ fn meshes_and_light_that_spreads_are_in_the_picture() {
     println!("none, forward, back, four sweeps: {means:?}");
     assert!(means.windows(2).all(|pair| pair[1] > pair[0]), "{means:?}");
     // Light does not change what is seen through.
-    assert!(none.through() == sweeps.through());
+    assert!(none.through() == sweeps.through() && none.through().iter().all(|through| *through > 0.0));
     for [cone, path] in [["20", "0.1"], ["80", "1"]] {
         let other = run(&format!("--forward --cone {cone} --free-path {path}"));
         assert!(mean(&other) > mean(&none) && mean(&other) != mean(&forward));
@@ -289,8 +289,6 @@ fn meshes_and_light_that_spreads_are_in_the_picture() {
             let mesh = run(&format!("--light {light} {flags} --mesh square.obj"));
             let opaque = mesh.through().iter().filter(|through| **through == 0.0).count();
             assert!((20..800).contains(&opaque), "{light} {flags}: {opaque}");
-            let far = run(&format!("--light {light} {flags} --mesh square.obj@0,50,0"));
-            assert!(far.through().iter().all(|through| *through > 0.0), "{light} {flags}");
         }
         let hard = run(&format!("--light {light} --mesh square.obj@0,2,0"));
         let soft = run(&format!("--light {area} --soft --mesh square.obj@0,2,0"));
