@@ -273,7 +273,7 @@ fn meshes_and_light_that_spreads_are_in_the_picture() {
     let [none, forward, back, sweeps] = ["", "--forward", "--back", "--back --sweeps 4"].map(run);
     let means = [&none, &forward, &back, &sweeps].map(mean);
     println!("none, forward, back, four sweeps: {means:?}");
-    assert!(means.windows(2).all(|pair| pair[1] > pair[0]), "{means:?}");
+    assert!(means[1] > 1.1 * means[0] && means[2] > 1.02 * means[1] && means[3] > means[2], "{means:?}");
     // Light does not change what is seen through.
     assert!(none.through() == sweeps.through() && none.through().iter().all(|through| *through > 0.0));
     for [cone, path] in [["20", "0.1"], ["80", "1"]] {

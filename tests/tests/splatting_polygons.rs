@@ -13,7 +13,7 @@ mod sheet_scene;
 mod sheets;
 
 use airlight::core::Light;
-use airlight::data::{Bounds, Mesh, Volume, cloud, cuboid, plane, sphere, torus};
+use airlight::data::{Bounds, Mesh, Volume, cuboid, plane, sphere, torus};
 use airlight::splatting::{
     SheetFrame, SheetInputs, SheetLighting, SheetSettings, Splats, SplattingError, Surfaces,
 };
@@ -23,7 +23,7 @@ use airlight_tests::reference::splatting::polygons::{Hit, Mixed, Reflection, Tri
 use airlight_tests::reference::splatting::{Medium, Scene};
 use glam::{Mat4, Vec2};
 use gpu::{gpu, shaders};
-use sheet_scene::{camera, directions, field_of, light};
+use sheet_scene::{camera, directions, field_of, light, small_cloud};
 use sheets::{Shot, colored, metres, shoot_all, splats};
 
 const SIZE: [u32; 2] = [60, 40];
@@ -183,13 +183,6 @@ fn shadows_of_polygons_are_those_of_rays() {
         assert!(lit > 250 && dark > 70 && edges < 300, "{degrees}: {lit} {dark} {edges}");
         assert_eq!(wrong, 0, "{degrees}");
     }
-}
-
-/// Values up to 1.
-fn small_cloud() -> Volume {
-    let mut volume = cloud([32, 16, 28], 3);
-    volume.values.iter_mut().for_each(|value| *value /= 3.0);
-    volume
 }
 
 #[test]

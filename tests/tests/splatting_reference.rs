@@ -7,6 +7,8 @@
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/sheet_scene.rs"]
+mod sheet_scene;
 #[path = "support/sheets.rs"]
 mod sheets;
 
@@ -19,6 +21,7 @@ use airlight_tests::reference::light::Light as ReferenceLight;
 use airlight_tests::reference::splatting::{Field, Kernel, Medium, Ramp, Scene};
 use glam::Mat4 as HostMat4;
 use gpu::{gpu, host_camera, host_vector};
+use sheet_scene::{directions, field_of, small_cloud};
 use sheets::{Shot, colored, shoot, shoot_all, splats};
 
 const SIZE: [u32; 2] = [64, 40];
@@ -26,77 +29,14 @@ const ALBEDO: [[f64; 3]; 2] = [[0.95, 0.6, 0.3], [0.5, 0.7, 0.9]];
 const MEDIUM: Medium = Medium { albedo: ALBEDO, extinction: 3.0, ambient: [0.02, 0.03, 0.05], g: 0.4 };
 const RADIANCE: [f64; 3] = [9.0, 8.0, 6.0];
 
-/// Values up to 1.
-fn small_cloud() -> Volume {
-    let mut volume = cloud([32, 16, 28], 3);
-    for value in &mut volume.values {
-        *value /= 3.0;
-    }
-    volume
-}
-
-fn field_of(volume: &Volume) -> Field {
-    let size = volume.size.map(|side| side as usize);
-    let columns: [[f64; 4]; 4] =
-        volume.world_from_unit.to_cols_array_2d().map(|column| column.map(f64::from));
-    // Voxel i lies at (i + 0.5) / size of the box 0..1.
-    let mut voxels = columns;
-    for axis in 0..3 {
-        for row in 0..4 {
-            voxels[axis][row] = columns[axis][row] / size[axis] as f64;
-            voxels[3][row] += 0.5 * voxels[axis][row];
-        }
-    }
-    let world_from_voxel = Mat4 { columns: voxels };
-    Field {
-        size,
-        values: volume.values.iter().copied().map(f64::from).collect(),
-        world_from_voxel,
-        voxel_from_world: world_from_voxel.inverse().unwrap(),
-        kernel: Kernel::new(0.7, 2.25),
-    }
-}
-
-/// The camera that looks at the cloud's middle in a direction, for both.
 fn camera(direction: Vec3, parallel: bool) -> (ReferenceCamera, Camera) {
-    let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
-    let (eye, target, up) = (direction * -9.0, Vec3::default(), Vec3::new(0.0, 1.0, 0.0));
-    let reference = if parallel {
-        let view =
-            OrthographicView { eye, target, up, half_height: 2.1, aspect, depth: 20.0, reversed: false };
-        ReferenceCamera::orthographic(&view)
-    } else {
-        let view = View { eye, target, up, fov_y: 0.5, aspect, near: 0.5, far: 40.0, reversed: true };
-        ReferenceCamera::perspective(&view)
-    };
-    (reference, Camera { projection: u32::from(parallel), ..host_camera(&reference, SIZE) })
+    sheet_scene::camera(direction, parallel, SIZE)
 }
 
-/// A light that goes in a direction at the cloud's middle, for both.
+/// A light that goes in a direction at the cloud's middle.
 fn light(direction: Vec3, spot: bool, volume: &Volume) -> (ReferenceLight, Light) {
-    let rgb = glam::Vec3::from(RADIANCE.map(|x| x as f32));
-    if spot {
-        let position = direction * -8.0;
-        let [outer, inner] = [25.0_f32, 16.0];
-        let host =
-            Light::spot(host_vector(position), glam::Vec3::ZERO, outer, inner, 30.0 * rgb, 0.1, 1.0, 20.0);
-        let [inner, outer] = [inner, outer].map(|degrees| f64::from(degrees).to_radians());
-        return (
-            ReferenceLight::Spot { position, axis: direction, inner, outer, radius: 0.1 },
-            host.unwrap(),
-        );
-    }
     let bounds = volume.bounds();
-    let towards = direction * -1.0;
-    let host = Light::directional(host_vector(towards), rgb, bounds.min - 0.5, bounds.max + 0.5);
-    (ReferenceLight::Directional { towards }, host.unwrap())
-}
-
-fn directions(degrees: f64) -> [Vec3; 2] {
-    let view = Vec3::new(0.35, -0.3, -0.9).normalised();
-    let across = view.cross(Vec3::new(0.3, 0.9, 0.1)).normalised().cross(view);
-    let angle = degrees.to_radians();
-    [view, view * angle.cos() + across * -angle.sin()]
+    sheet_scene::light(direction, spot, RADIANCE, [bounds.min - 0.5, bounds.max + 0.5])
 }
 
 fn lighting() -> SheetLighting {

@@ -209,10 +209,7 @@ fn a_slab_of_splats_has_the_same_penumbra() {
             let splats = splats(&volume);
             let height = f64::from(layer) + 0.5 - 20.0;
             for angle in [0.0_f32, 60.0, 120.0] {
-                // Sheets of a dense slab shade each other's edge as if by chance: too dark by up
-                // to a third of the width, a known limit. Tilted sheets of such a slab leak; see the book.
-                let dense = (angle == 0.0).then_some((12.0, 0.35));
-                for (thick, tolerance) in [Some((0.4_f32, 0.1)), dense].into_iter().flatten() {
+                for (thick, dense) in [(0.4_f32, false), (12.0, true)] {
                     let (sine, cosine) = angle.to_radians().sin_cos();
                     let view = Vec3::new(0.0, -cosine, sine);
                     let soft = SoftShadows::new(size);
@@ -269,10 +266,10 @@ fn a_slab_of_splats_has_the_same_penumbra() {
                         "light {}, slab {own_depth} m before, eye at {angle}, extinction {thick}: width {found:.3}, off by {shift:.3}",
                         light.kind
                     );
-                    assert!(
-                        (found - 1.0).abs() < tolerance && shift.abs() < tolerance,
-                        "{layer} {angle} {thick}"
-                    );
+                    // Sheets of a dense slab shade each other's edge as if by chance, and where they are tilted light leaks
+                    // where layers meet: a known failure, which fails here once it is none.
+                    let right = (found - 1.0).abs() < 0.1 && shift.abs() < 0.1;
+                    assert!(right != dense, "{layer} {angle} {thick}");
                 }
             }
         }

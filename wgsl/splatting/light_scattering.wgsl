@@ -17,12 +17,9 @@
 
 #import airlight::core::camera::{Camera, matrix_row}
 #import airlight::core::phase::henyey_greenstein
+#import airlight::splatting::blur::{blur_radius, blur_sums, blur_weight}
 #import airlight::splatting::sheet_shading::mean_transmittance
 
-/// Variance of a kernel that still fits, texels^2; of a greater one this is what remains.
-const MOST_VARIANCE: f32 = 16.0;
-/// Texels that a kernel reaches at most.
-const MOST_RADIUS: u32 = 12u;
 /// Angle from which light counts as going aside no farther, radians: 75 degrees. The tangent has no bound at a right angle.
 const STEEPEST: f32 = 1.3089969;
 
@@ -107,33 +104,15 @@ fn texels_per_metre(light_camera: Camera, point: vec3<f32>) -> vec2<f32> {
     return 0.5 * light_camera.viewport * vec2<f32>(length(x), length(y)) / w;
 }
 
-/// A kernel of a variance in texels^2, clamped to 0..MOST_VARIANCE, which it has exactly, as it has the sum 1. Up to half a texel^2 it
-/// has three weights; above, those of a Gaussian that ends at three standard deviations, mended by a parabola.
+/// A kernel of a variance in texels^2 as of `splatting/blur`, which has a greatest one: of a greater variance that is what remains.
 fn axis_kernel(variance: f32) -> AxisKernel {
-    let v = clamp(variance, 0.0, MOST_VARIANCE);
-    var weights = array<vec4<f32>, 4>(
-        vec4<f32>(1.0 - v, 0.5 * v, 0.0, 0.0), vec4<f32>(0.0), vec4<f32>(0.0),
-        vec4<f32>(0.0, 0.0, 0.0, select(0.0, 1.0, v > 0.0))
-    );
-    if v > 0.5 {
-        let radius = min(u32(ceil(3.0 * sqrt(v))), MOST_RADIUS);
-        var moments = vec3<f32>(1.0, 0.0, 0.0);
-        for (var i = 1u; i <= radius; i++) {
-            let square = f32(i * i);
-            moments += 2.0 * exp(-0.5 * square / v) * vec3<f32>(1.0, square, square * square);
-        }
-        let own = moments.y / moments.x;
-        let bend = (v - own) / (moments.z / moments.x - own * own);
-        var rest = 0.0;
-        for (var i = 1u; i <= radius; i++) {
-            let square = f32(i * i);
-            let weight = exp(-0.5 * square / v) / moments.x * (1.0 + bend * (square - own));
-            weights[i >> 2u][i & 3u] = weight;
-            rest += weight;
-        }
-        weights[0].x = 1.0 - 2.0 * rest;
-        weights[3].w = f32(radius);
+    let radius = blur_radius(variance);
+    let sums = blur_sums(variance);
+    var weights = array<vec4<f32>, 4>(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
+    for (var offset = 0u; offset <= radius; offset++) {
+        weights[offset >> 2u][offset & 3u] = blur_weight(variance, sums, offset);
     }
+    weights[3].w = f32(radius);
     return AxisKernel(weights);
 }
 

@@ -73,11 +73,12 @@ fn surface_slope(height: f32, before: vec2<f32>, behind: vec2<f32>, side: vec2<f
     return length(min(changes, vec2<f32>(1e6)));
 }
 
-/// How deep the solid behind a surface is, metres along the normal: the reciprocal of its slope, between `least` and what is known.
-/// `behind`: from the first to the last surface, metres.
-fn solid_depth(soft: SoftLight, slope: f32, least: f32, behind: f32) -> f32 {
+/// How deep the solid behind a surface at `height` is, metres along the normal: the reciprocal of its slope, at least `least`, and at most
+/// to the height `end` at which the light ray leaves it; what it never leaves is no solid and 0 deep.
+fn solid_depth(soft: SoftLight, height: f32, slope: f32, least: f32, end: f32) -> f32 {
     let guess = max(soft.filling / max(slope, 1e-6), least);
-    return min(guess, min(max(behind, 0.0), soft.deepest));
+    let known = select(0.0, max(end - height, 0.0), is_surface(end));
+    return min(guess, min(known, soft.deepest));
 }
 
 /// Whether a surface at `height` lies in a sheet; the first sheet has all before it as well. `heights`: of the sheet's ends.

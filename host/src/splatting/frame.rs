@@ -95,7 +95,7 @@ pub struct SoftShadows {
     /// the scene, metres, 0 to 1000000.
     pub size: f32,
     /// Depth of solids where their surface rises by a metre for each metre across the light, metres; about half the width of things.
-    /// Solids end at their last surface in any case.
+    /// Solids end where the light ray leaves them in any case; an open mesh is none.
     pub filling: f32,
     /// Greatest depth of solids, metres; 0 where surfaces are thin.
     pub deepest: f32,

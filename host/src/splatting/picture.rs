@@ -102,11 +102,12 @@ impl<'a> SheetPicture<'a> {
         let sheets = [&uniforms.sheets, &uniforms.kernel];
         let targets = [&picture, &light_means];
         let order = Order::new(gpu, shaders, splats, sheets, targets, settings.count, settings.scanning)?;
-        let numbers: Vec<Buffer> = (0..settings.count).map(|index| number(gpu, index)).collect();
+        let numbers: Vec<Buffer> =
+            (0..settings.count).map(|index| Buffer::uniform(gpu, &SheetNumber::new(index))).collect();
         let buffers = [&uniforms.camera, &uniforms.light_camera, sheets[0]];
         let surfaces = given.map(|surfaces| {
-            let far = matches!(settings.transport, LightTransport::Soft(_));
-            SurfacePictures::new(gpu, shaders, surfaces, buffers, [size, settings.light_size], far)
+            let exits = matches!(settings.transport, LightTransport::Soft(_));
+            SurfacePictures::new(gpu, shaders, surfaces, buffers, [size, settings.light_size], exits)
         });
         let surfaces = surfaces.transpose()?;
         let means = |pass, camera, heights| Means::new(gpu, pass, &order, camera, sheets, &numbers, heights);
@@ -152,8 +153,8 @@ impl<'a> SheetPicture<'a> {
             }
             LightTransport::Soft(soft) => {
                 let lit = surfaces.as_ref().and_then(|surfaces| {
-                    let far_heights = surfaces.light_far_heights()?;
-                    Some(LitSurfaces { heights: surfaces.light_heights(), far_heights })
+                    let exit_heights = surfaces.light_exit_heights()?;
+                    Some(LitSurfaces { heights: surfaces.light_heights(), exit_heights })
                 });
                 Box::new(AreaLight::new(gpu, shaders, &all, soft, settings.count, settings.light_size, lit)?)
             }
@@ -248,7 +249,8 @@ impl<'a> SheetPicture<'a> {
         let light_sheets =
             LightSheets { pass: light_splat, order, means: &self.light, target: &self.light_means };
         self.path.begin(encoder, &light_sheets)?;
-        begin_clear(encoder, &self.means[2]);
+        // Nothing lies before the first sheet.
+        self.eye.record(encoder, splat, order, u32::MAX, &self.means[2]);
         let draw = |encoder: &mut wgpu::CommandEncoder, index: u32| {
             self.eye.record(encoder, splat, order, index, &self.means[index as usize % 3]);
         };
@@ -285,12 +287,4 @@ impl<'a> SheetPicture<'a> {
     pub fn returned(&self) -> Option<&Texture> {
         self.path.returned()
     }
-}
-
-fn number(gpu: &Gpu, index: u32) -> Buffer {
-    Buffer::uniform(gpu, &SheetNumber { index, reserved_a: 0, reserved_b: 0, reserved_c: 0 })
-}
-
-fn begin_clear(encoder: &mut wgpu::CommandEncoder, target: &Texture) {
-    drop(crate::pass::begin_target(encoder, target, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
 }

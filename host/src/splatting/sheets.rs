@@ -48,6 +48,13 @@ pub struct SheetNumber {
     pub reserved_c: u32,
 }
 
+impl SheetNumber {
+    /// Of the sheet `index`.
+    pub fn new(index: u32) -> Self {
+        Self { index, reserved_a: 0, reserved_b: 0, reserved_c: 0 }
+    }
+}
+
 impl Sheets {
     /// Sheets half-way between two directions, of any length, over `points` with room of `reach` (of a direction: metres) around each.
     /// `view`: in which the eye looks; `light`: in which light goes; one that is none counts as the other, and two as straight down.

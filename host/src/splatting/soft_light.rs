@@ -24,11 +24,7 @@ pub(super) struct LitSurfaces<'a> {
     /// Height of the first surface along each light ray, metres; 1e30 where there is none.
     pub(super) heights: &'a Texture,
     /// Height of the last.
-    pub(super) far_heights: &'a Texture,
-}
-
-fn number(index: u32) -> SheetNumber {
-    SheetNumber { index, reserved_a: 0, reserved_b: 0, reserved_c: 0 }
+    pub(super) exit_heights: &'a Texture,
 }
 
 fn write_all<T: ShaderType + ShaderSize + WriteInto>(gpu: &Gpu, buffer: &Buffer, all: &Vec<T>) {
@@ -94,7 +90,7 @@ impl AreaLight {
         let merges = Buffer::storage(gpu, LayerMerge::min_size().get() * u64::from(count));
         let blurs = Buffer::storage(gpu, LayerBlur::min_size().get() * SOFT_LAYERS as u64 * u64::from(count));
         let softened = Buffer::storage(gpu, bytes);
-        let numbers = (0..=count).map(|index| Buffer::uniform(gpu, &number(index)));
+        let numbers = (0..=count).map(|index| Buffer::uniform(gpu, &SheetNumber::new(index)));
         let numbers: Vec<Buffer> = numbers.collect();
         let sets = if surfaces.is_some() { 3 } else { 1 };
         let sets = (0..sets).map(|_| {
@@ -119,7 +115,7 @@ impl AreaLight {
         all.extend(names.into_iter().zip(sets.iter().map(|set| Resource::from(&set.layers))));
         if let Some(surfaces) = surfaces {
             all.push(("light_heights", surfaces.heights.into()));
-            all.push(("light_far_heights", surfaces.far_heights.into()));
+            all.push(("light_exit_heights", surfaces.exit_heights.into()));
         }
         all.extend(held.as_ref().map(|held| ("held", held.into())));
         let arrive = |number: &Buffer| {

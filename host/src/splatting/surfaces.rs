@@ -77,18 +77,18 @@ pub(super) struct SurfacePictures<'a> {
     albedo: Drawn,
     normal: Drawn,
     light_heights: Drawn,
-    light_far_heights: Option<Drawn>,
+    light_exit_heights: Option<Drawn>,
 }
 
 impl<'a> SurfacePictures<'a> {
-    /// `far`: whether the last surface along each light ray is wanted as well.
+    /// `exits`: whether it is wanted as well where light rays leave solids.
     pub(super) fn new(
         gpu: &Gpu,
         shaders: &Shaders,
         surfaces: &'a Surfaces,
         [camera, light_camera, sheets]: [&Buffer; 3],
         [size, light_size]: [[u32; 2]; 2],
-        far: bool,
+        exits: bool,
     ) -> Result<Self, SplattingError> {
         let composed = shaders.compose("splatting/surfaces", "default").map_err(PassError::from)?;
         let drawn = |fragment: &str, camera: &Buffer, size, format: TextureFormat| {
@@ -113,7 +113,7 @@ impl<'a> SurfacePictures<'a> {
                 clear,
             })
         };
-        let far = far.then(|| drawn("fragment_height", light_camera, light_size, R32Float));
+        let exits = exits.then(|| drawn("fragment_exit_height", light_camera, light_size, R32Float));
         Ok(Self {
             surfaces,
             eye_depth: Texture::target(gpu, size, Depth32Float),
@@ -122,7 +122,7 @@ impl<'a> SurfacePictures<'a> {
             albedo: drawn("fragment_albedo", camera, size, Rgba16Float)?,
             normal: drawn("fragment_normal", camera, size, Rgba16Float)?,
             light_heights: drawn("fragment_height", light_camera, light_size, R32Float)?,
-            light_far_heights: far.transpose()?,
+            light_exit_heights: exits.transpose()?,
         })
     }
 
@@ -133,8 +133,8 @@ impl<'a> SurfacePictures<'a> {
             drawn.record(encoder, meshes, &self.eye_depth, reversed[0]);
         }
         self.light_heights.record(encoder, meshes, &self.light_depth, reversed[1]);
-        if let Some(far) = &self.light_far_heights {
-            far.record(encoder, meshes, &self.light_depth, !reversed[1]);
+        if let Some(exits) = &self.light_exit_heights {
+            exits.record(encoder, meshes, &self.light_depth, reversed[1]);
         }
     }
 
@@ -150,9 +150,9 @@ impl<'a> SurfacePictures<'a> {
         &self.light_heights.target
     }
 
-    /// Of the last surface along each light ray.
-    pub(super) fn light_far_heights(&self) -> Option<&Texture> {
-        self.light_far_heights.as_ref().map(|far| &far.target)
+    /// Of where each light ray leaves the first solid.
+    pub(super) fn light_exit_heights(&self) -> Option<&Texture> {
+        self.light_exit_heights.as_ref().map(|exits| &exits.target)
     }
 
     pub(super) fn albedo(&self) -> &Texture {

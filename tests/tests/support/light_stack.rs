@@ -88,7 +88,7 @@ impl LightStack<'_> {
         let definitions = flags.fold(Definitions::new(), |all, (flag, _)| all.flag(flag));
         let pass = Pass::compute_with(gpu(), shaders(), name, &definitions).unwrap();
         let bind = |sheet: u32, [own, next]: [usize; 2], back: &Texture| {
-            let number = SheetNumber { index: sheet, reserved_a: 0, reserved_b: 0, reserved_c: 0 };
+            let number = SheetNumber::new(sheet);
             let number = Buffer::uniform(gpu(), &number);
             let all: Vec<(&str, Resource<'_>)> = vec![
                 ("light_camera", (&camera).into()),

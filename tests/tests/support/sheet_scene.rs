@@ -4,11 +4,18 @@
 
 use crate::gpu::{host_camera, host_vector};
 use airlight::core::{Camera, Light};
-use airlight::data::Volume;
+use airlight::data::{Volume, cloud};
 use airlight_tests::linear::{Mat4, Vec3};
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView, View};
 use airlight_tests::reference::light::Light as ReferenceLight;
 use airlight_tests::reference::splatting::{Field, Kernel};
+
+/// Values up to 1.
+pub fn small_cloud() -> Volume {
+    let mut volume = cloud([32, 16, 28], 3);
+    volume.values.iter_mut().for_each(|value| *value /= 3.0);
+    volume
+}
 
 /// The field that splats of a volume make.
 pub fn field_of(volume: &Volume) -> Field {

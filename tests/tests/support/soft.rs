@@ -67,7 +67,7 @@ impl Lit {
         texels.map(|(origin, way)| origin + way * ((height - normal.dot(origin)) / normal.dot(way))).collect()
     }
 
-    /// Of first and last surfaces along each ray, heights; `surfaces` gives their distances from a point on the ray.
+    /// Heights at which each light ray enters and leaves the first solid; `surfaces` gives distances from a point on the ray.
     pub fn heights(&self, surfaces: impl Fn(DVec3, DVec3) -> Option<[f64; 2]>) -> [Vec<f32>; 2] {
         let normal = self.sheets.normal.as_dvec3();
         let side = self.plane.light.size.x;
@@ -122,8 +122,7 @@ impl Lit {
         let groups = [size.x.div_ceil(16), size.y.div_ceil(8), 1];
         let mut found = Vec::new();
         for index in 0..=at.iter().copied().max().unwrap() {
-            let number =
-                Buffer::uniform(gpu, &SheetNumber { index, reserved_a: 0, reserved_b: 0, reserved_c: 0 });
+            let number = Buffer::uniform(gpu, &SheetNumber::new(index));
             let mut encoder = gpu.encoder();
             let bound = light
                 .bind(
@@ -144,7 +143,7 @@ impl Lit {
                         ("kept", (&sets[1]).into()),
                         ("filled", (&sets[2]).into()),
                         ("light_heights", (&first).into()),
-                        ("light_far_heights", (&last).into()),
+                        ("light_exit_heights", (&last).into()),
                         ("held", (&held).into()),
                     ],
                 )

@@ -37,9 +37,10 @@
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
 #import airlight::core::light::Light
+#import airlight::splatting::blur::BLUR_WEIGHTS
 #import airlight::splatting::sheets::{Sheets, SheetNumber, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
 #import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter}
-#import airlight::splatting::light_scattering::{Scattering, AxisKernel, SheetOptics, MOST_RADIUS, cone_shares, mean_square_slope}
+#import airlight::splatting::light_scattering::{Scattering, AxisKernel, SheetOptics, cone_shares, mean_square_slope}
 #import airlight::splatting::light_scattering::{spread_variance, texels_per_metre, axis_kernel, sheet_optics}
 
 @group(#{GROUP}) @binding(0) var<uniform> light_camera: Camera;
@@ -166,7 +167,7 @@ fn convolve_rows(corner: vec2<u32>, local: vec2<u32>, stage: u32) {
 #ifdef BACK
     radius = max(radius, u32(kernels[kernel + 2u].weights[3].w));
 #endif
-    radius = min(radius, MOST_RADIUS);
+    radius = min(radius, BLUR_WEIGHTS - 1u);
     let width = TILE.x + 2u * radius;
     let shares = cone_shares(scattering, lighting.g);
     for (var i = local.y * TILE.x + local.x; i < width * TILE.y; i += TILE.x * TILE.y) {
@@ -245,7 +246,7 @@ fn convolved_columns(texel: vec2<u32>) -> vec3<f32> {
     let place = place_of(texel);
     let middle = rows[place];
     var sum = middle.w * left[place].rgb + kernels[kernel + 1u].weights[0].x * middle.rgb;
-    let radius = min(u32(kernels[kernel + 1u].weights[3].w), MOST_RADIUS);
+    let radius = min(u32(kernels[kernel + 1u].weights[3].w), BLUR_WEIGHTS - 1u);
     for (var i = 1u; i <= radius; i++) {
         let weight = kernels[kernel + 1u].weights[i >> 2u][i & 3u];
         if texel.y >= i {
@@ -259,7 +260,7 @@ fn convolved_columns(texel: vec2<u32>) -> vec3<f32> {
     let all = arrayLength(&left);
     let last = arrayLength(&rows) - 1u;
     sum += kernels[kernel + 3u].weights[0].x * rows[min(all + place, last)].rgb;
-    let reach = min(u32(kernels[kernel + 3u].weights[3].w), MOST_RADIUS);
+    let reach = min(u32(kernels[kernel + 3u].weights[3].w), BLUR_WEIGHTS - 1u);
     for (var i = 1u; i <= reach; i++) {
         let weight = kernels[kernel + 3u].weights[i >> 2u][i & 3u];
         if texel.y >= i {

@@ -21,7 +21,7 @@
 // binding filled: transmittances of solids; like layers, with POLYGONS only.
 // binding light_heights: of the first surface along each light ray, along the normal of the sheets, metres, 1e30 where there is none; with
 // binding light_heights: POLYGONS only, r32float.
-// binding light_far_heights: the same of the last; with POLYGONS only, r32float.
+// binding light_exit_heights: the same of the first surface that turns its back to the light; with POLYGONS only, r32float.
 // binding held: out, what arrives at the first surface along each light ray, linear RGB; with POLYGONS only.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
@@ -52,7 +52,7 @@
 @group(#{GROUP}) @binding(12) var<storage, read_write> kept: array<f32>;
 @group(#{GROUP}) @binding(13) var<storage, read_write> filled: array<f32>;
 @group(#{GROUP}) @binding(14) var light_heights: texture_2d<f32>;
-@group(#{GROUP}) @binding(15) var light_far_heights: texture_2d<f32>;
+@group(#{GROUP}) @binding(15) var light_exit_heights: texture_2d<f32>;
 @group(#{GROUP}) @binding(16) var held: texture_storage_2d<rgba16float, write>;
 #endif
 
@@ -74,8 +74,8 @@ fn depth_behind(pixel: vec2<u32>, height: f32) -> f32 {
     let before = vec2<f32>(first_height(vec2<u32>(low.x, pixel.y)), first_height(vec2<u32>(pixel.x, low.y)));
     let behind = vec2<f32>(first_height(pixel + vec2<u32>(1u, 0u)), first_height(pixel + vec2<u32>(0u, 1u)));
     let slope = surface_slope(height, before, behind, texel_metres(soft, height));
-    let far = finite_or(textureLoad(light_far_heights, min(pixel, textureDimensions(light_far_heights) - 1u), 0).x, height);
-    return solid_depth(soft, slope, sheets.thickness, far - height);
+    let end = finite_or(textureLoad(light_exit_heights, min(pixel, textureDimensions(light_exit_heights) - 1u), 0).x, NO_SURFACE);
+    return solid_depth(soft, height, slope, sheets.thickness, end);
 }
 #endif
 

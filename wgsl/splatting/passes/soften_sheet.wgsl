@@ -35,7 +35,7 @@ fn prepare(layer: u32, axis: u32) {
     for (var offset = 0u; offset < BLUR_WEIGHTS; offset++) {
         weights[layer * BLUR_WEIGHTS + offset] = blur_weight(variance, sums, offset);
     }
-    let radius = select(blur_radius(variance), 0u, variance == 0.0);
+    let radius = blur_radius(variance);
     taps[layer] = vec2<i32>(i32(radius), i32(clamp(blur.distance[axis], 1u, 65536u)));
 }
 

@@ -2,11 +2,11 @@
 // summary: Polygons as sheets need them: how high each surface lies along the sheets' normal, its colour and its normal.
 // source: Zhang and Crawfis, 4.1, steps 1 and 2.
 // note: Drawn with a depth buffer of any convention: fragment_height into r32float, with the eye's camera and with the light's, cleared to
-// note: NO_SURFACE; fragment_albedo and fragment_normal into rgba16float with the eye's. With the depth test reversed fragment_height
-// note: gives the last surface along each light ray, which bounds how thick a solid is. An engine with a depth buffer
-// note: has the heights from it: `height_of` the point.
+// note: NO_SURFACE; fragment_albedo and fragment_normal into rgba16float with the eye's. fragment_exit_height draws only what turns its
+// note: back to the light: where each light ray leaves the first solid. An engine with a depth buffer has the
+// note: heights from it: `height_of` the point.
 // binding camera: the eye's camera or the light's.
-// binding sheets: the sheets; for fragment_height only.
+// binding sheets: the sheets; for heights only.
 
 #import airlight::core::camera::{Camera, towards_viewer}
 #import airlight::splatting::sheets::{Sheets, height_of}
@@ -32,6 +32,15 @@ fn vertex_surface(
 
 @fragment
 fn fragment_height(surface: Surface) -> @location(0) vec4<f32> {
+    return vec4<f32>(height_of(sheets, surface.world), 0.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment_exit_height(surface: Surface) -> @location(0) vec4<f32> {
+    // By the normal and not by the order of corners: meshes of both orders are drawn.
+    if dot(surface.normal, towards_viewer(camera, surface.world)) >= 0.0 {
+        discard;
+    }
     return vec4<f32>(height_of(sheets, surface.world), 0.0, 0.0, 1.0);
 }
 
