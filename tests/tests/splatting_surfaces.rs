@@ -36,7 +36,7 @@ fn shot(volumes: &[Splats], meshes: &[Mesh], settings: SheetSettings, frame: &Sh
 }
 
 fn scattering(cone: f32, back: bool) -> LightTransport {
-    LightTransport::Scattering(ScatteringSettings { cone, free_path: 0.3, back, sweeps: 2 })
+    LightTransport::Scattering(ScatteringSettings { cone, free_path: 1.0, back, sweeps: 2 })
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn crossings(profile: &mut [(f32, f32)]) -> [f32; 3] {
 #[test]
 fn the_penumbra_of_a_half_plane_on_a_floor_has_its_width() {
     let _turn = gpu::turn();
-    // Over x < 0 at the height 0, 4 m above the floor.
+    // Over x < 0 at the height 0, 4 m above the floor. The floor is open: what no back follows is no solid.
     let depth = 4.0_f32;
     let meshes = [
         plane(Vec2::new(12.0, 14.0), 1).transformed(Mat4::from_translation(Vec3::new(-6.0, 0.0, 0.0))),
@@ -180,7 +180,7 @@ fn the_penumbra_of_a_half_plane_on_a_floor_has_its_width() {
             );
             assert!((found - 1.0).abs() < 0.1 && (middle / width).abs() < 0.06, "{found} {middle}");
             let dark = profile.iter().filter(|at| at.0 < -1.0 * width).map(|at| at.1).fold(0.0, f32::max);
-            assert!(dark < 0.02, "{dark}");
+            assert!(dark < 0.03, "{dark}");
         }
     }
 }
@@ -192,46 +192,45 @@ fn scattered_light_gets_behind_surfaces() {
     let mut fog = metres([20; 3], |_| 0.5);
     fog.world_from_unit = Mat4::from_scale(Vec3::splat(0.2)) * fog.world_from_unit;
     let volumes = [splats(&fog)];
-    let meshes = [
-        cuboid(Vec3::new(1.6, 0.1, 1.6)),
-        plane(Vec2::splat(6.0), 1).transformed(Mat4::from_translation(Vec3::NEG_Y * 1.6)),
-    ];
+    let plate = cuboid(Vec3::new(1.6, 0.1, 1.6));
+    let floor = plane(Vec2::splat(6.0), 1).transformed(Mat4::from_translation(Vec3::NEG_Y * 1.6));
     let light = Light::directional(Vec3::Y, Vec3::splat(6.0), Vec3::splat(-4.0), Vec3::splat(4.0)).unwrap();
-    let lighting = SheetLighting { g: 0.2, diffuse: 1.0, specular: 0.0, ..SheetLighting::new(0.6) };
-    let direct = LightTransport::Direct;
-    let ways = [direct, scattering(60.0, false), scattering(60.0, true)];
-    let settings =
-        |transport| SheetSettings { count: 40, light_size: [128; 2], transport, ..SheetSettings::default() };
-    // From above the floor beside and below the plate; from below the plate's underside, which faces away from the light.
-    let (camera, points) = above(Vec3::new(-0.8, -0.6, 0.0).normalize(), -1.6);
-    let seen =
-        ways.map(|way| shot(&volumes, &meshes, settings(way), &SheetFrame { camera, light, lighting }));
-    let mean = |shot: &Shot, wanted: &dyn Fn(Vec3) -> bool| {
-        let own = shot.picture.chunks_exact(4).zip(&points).filter(|(_, point)| wanted(**point));
-        let (sum, count) = own.fold((0.0, 0), |(sum, count), (pixel, _)| (sum + pixel[0], count + 1));
-        assert!(count > 20, "{count}");
-        sum / count as f32
+    // Means of what surfaces reflect over points of a height, as they are seen through the fog.
+    let means = |meshes: &[Mesh], direction: Vec3, height: f32, wanted: &dyn Fn(Vec3) -> bool| {
+        let (camera, points) = above(direction.normalize(), height);
+        [LightTransport::Direct, scattering(60.0, false), scattering(60.0, true)].map(|transport| {
+            let settings =
+                SheetSettings { count: 40, light_size: [48; 2], transport, ..SheetSettings::default() };
+            let [dull, bright] = [0.0, 1.0].map(|diffuse| {
+                let lighting = SheetLighting {
+                    g: 0.2,
+                    diffuse,
+                    specular: 0.0,
+                    ambient: Vec3::ZERO,
+                    ..SheetLighting::new(0.6)
+                };
+                shot(&volumes, meshes, settings, &SheetFrame { camera, light, lighting })
+            });
+            let own = bright.picture.iter().zip(&dull.picture).step_by(4).zip(&points);
+            let own = own.filter(|(_, point)| wanted(**point));
+            let (sum, count) =
+                own.fold((0.0, 0), |(sum, count), ((bright, dull), _)| (sum + bright - dull, count + 1));
+            assert!(count > 20, "{count}");
+            sum / count as f32
+        })
     };
-    let shade = |point: Vec3| point.x.abs() < 0.35 && point.z.abs() < 0.35;
-    let sun = |point: Vec3| point.x > 1.2 && point.x < 1.6 && point.z.abs() < 0.5;
-    let [shades, suns] =
-        [&shade as &dyn Fn(Vec3) -> bool, &sun].map(|where_| seen.each_ref().map(|shot| mean(shot, where_)));
-    println!("in the plate's shadow {shades:?}, beside it {suns:?}");
-    // The fog before the floor is in both; what the floor has more is bounded by what it has in the open.
-    assert!(shades[1] > 1.1 * shades[0] && shades[2] > shades[1], "{shades:?}");
-    assert!(suns[1] > suns[0] && shades[2] < suns[2], "{shades:?} {suns:?}");
-    let (below, under) = above(Vec3::new(-0.3, 0.95, 0.0).normalize(), -0.05);
-    let meshes = [meshes[0].clone()];
-    let unlit = ways.map(|way| {
-        let shot = shot(&volumes, &meshes, settings(way), &SheetFrame { camera: below, light, lighting });
-        let own = shot.picture.chunks_exact(4).zip(&under);
-        let own = own.filter(|(_, point)| point.x.abs() < 0.5 && point.z.abs() < 0.5);
-        let (sum, count) = own.fold((0.0, 0), |(sum, count), (pixel, _)| {
-            assert_eq!(pixel[3], 0.0);
-            (sum + pixel[0], count + 1)
-        });
-        sum / count as f32
+    let both = [plate.clone(), floor];
+    let down = Vec3::new(-0.8, -0.6, 0.0);
+    let shade = means(&both, down, -1.6, &|point: Vec3| point.x.abs().max(point.z.abs()) < 0.35);
+    let sun = means(&both, down, -1.6, &|point: Vec3| point.x > 1.2 && point.x < 1.6 && point.z.abs() < 0.5);
+    println!("in the plate's shadow {shade:?}, beside it {sun:?}");
+    // Some 15 % of the light are scattered on, by some 0.4 m, 0.8 m from the shadow's edges.
+    assert!(shade[0] == 0.0 && (0.01..0.03).contains(&(shade[1] / sun[1])), "{shade:?} {sun:?}");
+    assert!(shade[2] > 1.02 * shade[1] && sun[1] > 1.1 * sun[0] && sun[2] > sun[1], "{shade:?} {sun:?}");
+    // From below; of the plate what turns its back to the light.
+    let under = means(&[plate], Vec3::new(-0.3, 0.95, 0.0), -0.05, &|point: Vec3| {
+        point.x.abs().max(point.z.abs()) < 0.7
     });
-    println!("underside {unlit:?}");
-    assert!(unlit[1] > unlit[0] && unlit[2] > 1.05 * unlit[1], "{unlit:?}");
+    println!("underside {under:?}");
+    assert!(under[0] == 0.0 && under[1] == 0.0 && under[2] > 0.01 * sun[2], "{under:?}");
 }
