@@ -103,7 +103,7 @@ fn splat_times(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
 
 /// A frame of 128 sheets each of which looks at all splats, over one of sorted splats; the same bits come out.
 fn sorted(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
-    let mut scene = Scene::cloud(160)?;
+    let mut scene = Scene::cloud(176)?;
     scene.sheets = 128;
     let splats = scene.splats(gpu, shaders)?;
     let settings = scene.settings();

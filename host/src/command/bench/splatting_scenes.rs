@@ -14,8 +14,6 @@ use airlight_tests::reference::light::Light as ReferenceLight;
 use airlight_tests::reference::splatting::{Field, Kernel, Medium, Ramp, Scene as ReferenceScene};
 use glam::{Mat4, Vec3};
 
-/// Rows and columns of pixels that are marched in f64.
-const GRID: usize = 6;
 const RADIANCE: Vec3 = Vec3::new(9.0, 8.0, 7.0);
 const ALBEDO: [f32; 3] = [0.9, 0.8, 0.7];
 /// What errors of pictures are.
@@ -34,6 +32,8 @@ pub(super) struct Scene {
     size: [u32; 2],
     /// How many sheets.
     pub(super) sheets: u32,
+    /// Rows and columns of pixels that are marched in f64.
+    grid: usize,
 }
 
 impl Scene {
@@ -48,6 +48,7 @@ impl Scene {
             extinction: 12.0,
             size: [2 * side; 2],
             sheets: side / 2,
+            grid: 6,
         })
     }
 
@@ -59,7 +60,9 @@ impl Scene {
         volume.world_from_unit = Mat4::from_translation(-0.5 * sides) * Mat4::from_scale(sides);
         volume.values.iter_mut().for_each(|value| *value /= 32.0);
         let threshold = 3.0 / 32.0;
-        Ok(Self { volume, threshold, ramp: [threshold, 0.5], extinction: 40.0, size: [256; 2], sheets: 64 })
+        let ramp = [threshold, 0.5];
+        // Most pixels show nothing, so that more of them have to be compared.
+        Ok(Self { volume, threshold, ramp, extinction: 40.0, size: [192; 2], sheets: 64, grid: 64 })
     }
 
     /// The same picture with every voxel drawn: what was left out has the least value that a half float holds.
@@ -133,8 +136,9 @@ impl Scene {
     /// Pixels of the grid.
     fn pixels(&self) -> Vec<[usize; 2]> {
         let [width, height] = self.size.map(|side| side as usize);
-        let place = |i: usize, side: usize| (2 * i + 1) * side / (2 * GRID);
-        (0..GRID * GRID).map(|i| [place(i % GRID, width), place(i / GRID, height)]).collect()
+        let grid = self.grid;
+        let place = |i: usize, side: usize| (2 * i + 1) * side / (2 * grid);
+        (0..grid * grid).map(|i| [place(i % grid, width), place(i / grid, height)]).collect()
     }
 
     /// Radiance of the pixels of the grid, marched in f64 through the voxels that are drawn.
