@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Every intermediate buffer of scattering, of stylization and of paintings, and transmittance maps, against their snapshots, on small scenes of
+//! Every intermediate buffer of scattering, of stylization, of paintings and of sheets, and transmittance maps, against their snapshots, on small scenes of
 //! the tests' own. `make bless` replaces what has changed; look at the pictures at full size first.
 #![allow(clippy::unwrap_used)]
 
@@ -7,14 +7,22 @@
 mod gpu;
 #[path = "support/painted.rs"]
 mod painted;
+#[path = "support/sheet_scene.rs"]
+mod sheet_scene;
+#[path = "support/sheets.rs"]
+mod sheets;
 #[path = "support/snapshot.rs"]
 mod snapshot;
 
 use airlight::core::{DepthRange, Light, Reading, Tonemap, VolumeTexture};
-use airlight::data::{burst, cloud, torus_field};
+use airlight::data::{burst, cloud, sphere, torus_field};
 use airlight::painterly::{Orientation, PainterlyStyle};
 use airlight::scattering::{
     Along, BasisFormat, Composite, Inputs, March, Prefiltered, Settings, Visibility, Weighting,
+};
+use airlight::splatting::{
+    LightTransport, ScatteringSettings, SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings,
+    SoftShadows, Surfaces,
 };
 use airlight::stylize::{
     Baker, Element, Form, HoleMask, HoleParameters, HolePattern, HolePicture, Holes, Operator, PickScene,
@@ -305,6 +313,45 @@ fn painterly_torus() {
 
     let pixels = Tonemap::new(gpu(), shaders()).unwrap().run(gpu(), &painting.picture, 1.0).unwrap();
     assert_picture(&name("picture"), &adapter, &Picture { size: painted::SIZE, pixels }, 0.95);
+}
+
+#[test]
+fn sheets_of_a_cloud_with_a_ball() {
+    let _turn = gpu::turn();
+    let volume = sheet_scene::small_cloud();
+    let volumes = [sheets::splats(&volume)];
+    let ball = sphere(0.4, 32, 16).transformed(glam::Mat4::from_translation(Vec3::new(0.5, 0.5, 0.2)));
+    let surfaces = Surfaces::new(gpu(), &[ball]).unwrap();
+    let transfer = sheets::colored([Vec3::ONE, Vec3::new(0.9, 0.6, 0.4)]);
+    let [view, way] = sheet_scene::directions(70.0);
+    let size = [40, 30];
+    let (_, camera) = sheet_scene::camera(view, false, size);
+    let bounds = volume.bounds();
+    let (_, light) = sheet_scene::light(way, false, [6.0, 5.0, 4.0], [bounds.min - 0.5, bounds.max + 0.5]);
+    let frame = SheetFrame { camera, light, lighting: SheetLighting::new(4.0) };
+    let scattering = ScatteringSettings { cone: 60.0, free_path: 0.2, back: true, sweeps: 2 };
+    let ways = [
+        ("direct", LightTransport::Direct),
+        ("scattered", LightTransport::Scattering(scattering)),
+        ("soft", LightTransport::Soft(SoftShadows::new(12.0))),
+    ];
+    for (name, transport) in ways {
+        let settings =
+            SheetSettings { count: 24, light_size: [40; 2], transport, ..SheetSettings::default() };
+        let inputs = SheetInputs { surfaces: Some(&surfaces), ..SheetInputs::new(&volumes, &transfer) };
+        let picture = SheetPicture::new(gpu(), shaders(), inputs, settings, size).unwrap();
+        picture.set(gpu(), &frame).unwrap();
+        let mut encoder = gpu().encoder();
+        picture.record(gpu(), &mut encoder).unwrap();
+        gpu().submit(encoder).unwrap();
+        // Half floats of sums of some ten sheets; at shadow edges another adapter may choose another texel.
+        let rounding = tolerance(4e-3, 0.01, 0.02);
+        assert_buffer(&format!("sheets_{name}_picture"), &buffer(&picture.picture, 0, 4, rounding));
+        assert_buffer(&format!("sheets_{name}_shadow"), &buffer(picture.shadow(), 0, 3, rounding));
+        if let Some(returned) = picture.returned() {
+            assert_buffer(&format!("sheets_{name}_returned"), &buffer(returned, 0, 3, rounding));
+        }
+    }
 }
 
 // The machinery itself.

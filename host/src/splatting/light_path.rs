@@ -78,10 +78,8 @@ pub(super) trait LightPath {
     /// What else the picture's pass is to be given.
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)>;
 
-    /// Bytes of its buffers and textures.
-    fn memory(&self) -> u64 {
-        self.shadow().memory()
-    }
+    /// Bytes of its textures and larger buffers.
+    fn memory(&self) -> u64;
 }
 
 /// Light that is only taken away.

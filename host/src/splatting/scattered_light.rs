@@ -71,6 +71,8 @@ pub(super) struct ScatteredLight {
     back: Option<Back>,
     /// What arrives at surfaces.
     held: Option<Texture>,
+    /// Bytes of buffers that only the pass knows.
+    buffer_bytes: u64,
 }
 
 /// Bytes of a texel of a stored sheet.
@@ -140,7 +142,8 @@ impl ScatteredLight {
             }
             _ => None,
         };
-        Ok(Self { pass, scattering, bound, shadow, back, held })
+        let buffer_bytes = 16 * texels + row_bytes + KERNELS * numbers.len() as u64;
+        Ok(Self { pass, scattering, bound, shadow, back, held, buffer_bytes })
     }
 
     fn over_light(
@@ -242,6 +245,14 @@ impl LightPath for ScatteredLight {
 
     fn returned(&self) -> Option<&Texture> {
         self.back.as_ref().map(|back| &back.returned)
+    }
+
+    fn memory(&self) -> u64 {
+        let stored =
+            self.back.iter().flat_map(|back| &back.stored).map(|sheet| sheet.raw.size()).sum::<u64>();
+        let back = self.back.iter().flat_map(|back| [&back.behind, &back.returned]);
+        let textures = back.chain(&self.held).chain([&self.shadow]).map(Texture::memory).sum::<u64>();
+        textures + stored + self.buffer_bytes
     }
 
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)> {

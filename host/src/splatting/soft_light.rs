@@ -23,7 +23,7 @@ use glam::Vec3;
 pub(super) struct LitSurfaces<'a> {
     /// Height of the first surface along each light ray, metres; 1e30 where there is none.
     pub(super) heights: &'a Texture,
-    /// Height of the last.
+    /// Height at which the light ray leaves the first solid, likewise.
     pub(super) exit_heights: &'a Texture,
 }
 
@@ -53,6 +53,8 @@ pub(super) struct AreaLight {
     arrivals: Vec<Bound>,
     soften: Pass,
     sets: Vec<LayerSet>,
+    /// Bytes of all layers.
+    layer_bytes: u64,
     shadow: Texture,
     /// What arrives at the first surface along each light ray, linear RGB; rgba16float. With surfaces.
     held: Option<Texture>,
@@ -124,7 +126,22 @@ impl AreaLight {
             light.bind_known(gpu, &all)
         };
         let arrivals = numbers.iter().map(arrive).collect::<Result<_, _>>()?;
-        Ok(Self { settings, size, soft, merges, blurs, light, arrivals, soften, sets, shadow, held })
+        // Softened rows are as large as a set.
+        let layer_bytes = bytes * (sets.len() as u64 + 1);
+        Ok(Self {
+            settings,
+            size,
+            soft,
+            merges,
+            blurs,
+            light,
+            arrivals,
+            soften,
+            sets,
+            layer_bytes,
+            shadow,
+            held,
+        })
     }
 
     /// Of a sheet, or behind the last.
@@ -180,6 +197,12 @@ impl LightPath for AreaLight {
 
     fn shadow(&self) -> &Texture {
         &self.shadow
+    }
+
+    fn memory(&self) -> u64 {
+        let textures: u64 =
+            [Some(&self.shadow), self.held.as_ref()].into_iter().flatten().map(Texture::memory).sum();
+        textures + self.layer_bytes + self.merges.raw.size() + self.blurs.raw.size()
     }
 
     fn resources(&self) -> Vec<(&'static str, Resource<'_>)> {
