@@ -186,6 +186,51 @@ fn the_penumbra_of_a_half_plane_on_a_floor_has_its_width() {
 }
 
 #[test]
+fn what_lies_behind_a_surface_does_not_shade_it() {
+    let _turn = gpu::turn();
+    let ball = [sphere(0.5, 96, 48).transformed(Mat4::from_translation(Vec3::Y * 0.9))];
+    // A slab that lets nothing through, below the ball; rays past the ball's edge end in it.
+    let mut slab = metres([40, 4, 40], |_| 1.0);
+    slab.world_from_unit = Mat4::from_scale(Vec3::splat(0.1)) * slab.world_from_unit;
+    let towards = Vec3::new(0.6, 0.7, 0.2).normalize();
+    let light = Light::directional(towards, Vec3::splat(3.0), Vec3::splat(-2.4), Vec3::splat(2.4)).unwrap();
+    let eye = Vec3::new(-0.5, -0.7, -0.5).normalize();
+    let (camera, _) = above(eye, 0.9);
+    let lighting =
+        SheetLighting { diffuse: 1.0, specular: 0.0, ambient: Vec3::ZERO, ..SheetLighting::new(60.0) };
+    for transport in
+        [LightTransport::Direct, scattering(20.0, false), LightTransport::Soft(SoftShadows::new(2.0))]
+    {
+        let settings =
+            SheetSettings { count: 64, light_size: [128; 2], transport, ..SheetSettings::default() };
+        let frame = SheetFrame { camera, light, lighting };
+        let [alone, both] =
+            [&[][..], &[splats(&slab)][..]].map(|volumes| shot(volumes, &ball, settings, &frame));
+        let (mut worst, mut count) = (0.0_f32, 0);
+        for (pixel, (alone, both)) in
+            alone.picture.chunks_exact(4).zip(both.picture.chunks_exact(4)).enumerate()
+        {
+            // Where the ball is seen, and its normal is known.
+            let ndc = Vec2::new((pixel % 96) as f32 + 0.5, (pixel / 96) as f32 + 0.5) / 96.0;
+            let ndc = ndc * Vec2::new(2.0, -2.0) + Vec2::new(-1.0, 1.0);
+            let origin = camera.world_from_clip.project_point3(ndc.extend(0.0)) - Vec3::Y * 0.9;
+            let along = origin.dot(eye);
+            let square = 0.47 * 0.47 - (origin.length_squared() - along * along);
+            if square <= 0.0 {
+                continue;
+            }
+            let cosine = (origin + eye * (-along - square.sqrt())).normalize().dot(towards);
+            if cosine > 0.12 {
+                count += 1;
+                worst = worst.max((both[0] / alone[0] - 1.0).abs());
+            }
+        }
+        println!("{transport:?}: {worst:.4} at most of {count} pixels");
+        assert!(count > 100 && worst < 0.03, "{transport:?}: {worst} of {count}");
+    }
+}
+
+#[test]
 fn scattered_light_gets_behind_surfaces() {
     let _turn = gpu::turn();
     // A fog of 4 m about a plate of 1.6 m, over a floor.

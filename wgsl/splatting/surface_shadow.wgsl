@@ -6,11 +6,12 @@
 // note: the lower is the nearer. Footprints end at surfaces, so that a texel of the shadow buffer keeps what reached its
 // note: surface. A comparison of heights then is right before, within and behind the volume (regions 1, 2 and 3).
 
-#import airlight::core::light::{texels_from_clip, metres_of_texel}
 #import airlight::splatting::sheets::{Sheets, sheet_heights}
 
 /// Height where a ray meets no surface, metres.
 const NO_SURFACE: f32 = 1e30;
+/// Texels by which heights of one surface differ from one to the next at most, where it counts as lit: some 83 degrees from across the light.
+const STEEPEST_TEXELS: f32 = 8.0;
 
 /// Whether there is a surface at a height.
 fn is_surface(height: f32) -> bool {
@@ -34,12 +35,9 @@ fn mean_before_surface(mean: f32, share: f32) -> f32 {
     return mean / max(share, 1e-3);
 }
 
-/// A surface's point moved off it by what a texel of the shadow buffer may be mistaken, metres. `width`: of the buffer in texels; `normal`: unit,
+/// A surface's point moved off it by what a texel of the shadow buffer may be mistaken, metres. `texel`: its side there, metres; `normal`: unit,
 /// to the side that is seen; `towards`: unit vector TOWARDS the light.
-fn off_surface(
-    clip_from_world: mat4x4<f32>, width: f32, point: vec3<f32>, normal: vec3<f32>, towards: vec3<f32>
-) -> vec3<f32> {
-    let texel = metres_of_texel(clip_from_world, width, point);
+fn off_surface(texel: f32, point: vec3<f32>, normal: vec3<f32>, towards: vec3<f32>) -> vec3<f32> {
     return point + normal * (1.5 * texel) + towards * texel;
 }
 
@@ -64,4 +62,29 @@ fn light_before_surfaces(
         sum += select(0.0, weights.x * weights.y, lit) * vec4<f32>(textureLoad(reached, at, 0).rgb, 1.0);
     }
     return sum;
+}
+
+/// What arrives at a surface's point at `height`, of the light that `reached` the first surface along each light ray, linear RGB: over those
+/// of the four nearest texels whose surface is no more than `reach` metres higher or lower. Rays that pass beside the surface have
+/// gone on into the volume behind it and know nothing of the point; where no texel is near enough, the brightest counts.
+fn light_on_surface(
+    reached: texture_2d<f32>, heights: texture_2d<f32>, place: vec2<f32>, height: f32, reach: f32
+) -> vec3<f32> {
+    let size = textureDimensions(heights);
+    let last = vec2<f32>(size) - 1.0;
+    let texel = clamp(place * vec2<f32>(size) - 0.5, vec2<f32>(0.0), last);
+    let low = floor(texel);
+    let part = texel - low;
+    var sum = vec4<f32>(0.0);
+    var brightest = vec3<f32>(0.0);
+    for (var tap = 0u; tap < 4u; tap++) {
+        let step = vec2<f32>(f32(tap & 1u), f32(tap >> 1u));
+        let at = vec2<u32>(min(low + step, last));
+        let weights = select(1.0 - part, part, step > vec2<f32>(0.5));
+        let light = textureLoad(reached, at, 0).rgb;
+        let near = abs(textureLoad(heights, at, 0).x - height) <= reach;
+        sum += select(0.0, weights.x * weights.y, near) * vec4<f32>(light, 1.0);
+        brightest = max(brightest, light);
+    }
+    return select(brightest, sum.rgb / max(sum.a, 1e-3), sum.a >= 1e-3);
 }

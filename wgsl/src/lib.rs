@@ -138,7 +138,7 @@ modules! {
     splatting::sheets [],
     splatting::footprint [],
     splatting::splat ["core::camera"],
-    splatting::surface_shadow ["core::light", "splatting::sheets"],
+    splatting::surface_shadow ["splatting::sheets"],
     splatting::sheet_shading ["core::phase", "core::transfer_function"],
     splatting::blur [],
     splatting::light_scattering ["core::camera", "core::phase", "splatting::blur", "splatting::sheet_shading"],

@@ -40,7 +40,7 @@
 // binding picture: out of show_sheets, radiance of all sheets, and the transmittance to what lies behind them.
 
 #import airlight::core::camera::{Camera, Ray, view_ray, ndc_from_pixel}
-#import airlight::core::light::{Light, direction_to_light, light_falloff, texels_from_clip}
+#import airlight::core::light::{Light, direction_to_light, light_falloff, texels_from_clip, metres_of_texel}
 #import airlight::splatting::sheets::{Sheets, SheetNumber, height_of, sheet_heights, metres_in_sheet, sheet_mean, LEAST_COSINE}
 #import airlight::splatting::sheet_shading::{SheetLighting, sheet_matter}
 #import airlight::splatting::sheet_shading::{gradient_of_changes, phong_radiance, scattered_radiance}
@@ -51,7 +51,7 @@
 #endif
 #ifdef POLYGONS
 #import airlight::splatting::surface_shadow::{NO_SURFACE, heights_before_surface, share_of_sheet, mean_before_surface, is_surface}
-#import airlight::splatting::surface_shadow::{off_surface, light_before_surfaces}
+#import airlight::splatting::surface_shadow::{off_surface, light_before_surfaces, light_on_surface, STEEPEST_TEXELS}
 #endif
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -183,6 +183,8 @@ struct SeenSurface {
     color: vec3<f32>,
     /// Where it is looked up, moved off it, metres.
     off: vec3<f32>,
+    /// Side of a texel of the shadow buffer there, metres.
+    texel: f32,
 }
 
 /// The surface at `height` that a pixel shows.
@@ -193,8 +195,8 @@ fn seen_surface(pixel: vec2<u32>, height: f32) -> SeenSurface {
     let unit = facing * inverseSqrt(max(dot(facing, facing), 1e-12));
     let to_light = direction_to_light(light, point);
     let color = clamp(textureLoad(albedo, pixel, 0).rgb, vec3<f32>(0.0), vec3<f32>(1.0));
-    let off = off_surface(light_camera.clip_from_world, f32(textureDimensions(light_heights).x), point, unit, to_light);
-    return SeenSurface(point, unit, to_light, -ray.direction, color, off);
+    let texel = metres_of_texel(light_camera.clip_from_world, f32(textureDimensions(light_heights).x), point);
+    return SeenSurface(point, unit, to_light, -ray.direction, color, off_surface(texel, point, unit, to_light), texel);
 }
 
 /// Radiance of a surface by light that arrives from a direction, linear RGB. `lights`: with or without what comes from all around.
@@ -206,7 +208,10 @@ fn reflected(lights: SheetLighting, seen: SeenSurface, towards: vec3<f32>, irrad
 /// Light at a surface of what is `reached` by the light, linear RGB, and the share of it that sees the light.
 fn light_at_surface(reached: texture_2d<f32>, seen: SeenSurface) -> vec4<f32> {
     let heights = vec2<f32>(-NO_SURFACE, height_of(sheets, seen.off));
-    return light_before_surfaces(reached, light_heights, place_in_light(seen.off), heights);
+    let sees = light_before_surfaces(reached, light_heights, place_in_light(seen.off), heights).a;
+    let own = height_of(sheets, seen.point);
+    let light = light_on_surface(reached, light_heights, place_in_light(seen.point), own, STEEPEST_TEXELS * seen.texel);
+    return vec4<f32>(light * sees, sees);
 }
 
 /// Radiance of the surface that a pixel shows, linear RGB.

@@ -85,7 +85,7 @@ pub fn teapot(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
 /// Mushrooms, which are polygons, on a plate, which is a volume, in hard and in soft shadows.
 pub fn mushrooms(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let plate =
-        solid_plate(144, Vec3::new(3.2, 0.12, 2.6), Mat4::from_translation(Vec3::new(0.0, -0.06, 0.0)));
+        solid_plate(192, Vec3::new(4.2, 0.12, 4.0), Mat4::from_translation(Vec3::new(0.0, -0.06, 0.4)));
     let still = Still {
         volumes: vec![plate],
         threshold: 0.01,
@@ -100,7 +100,7 @@ pub fn mushrooms(studio: &Studio, folder: &str) -> Result<Section, CommandError>
         },
         shading: Shading::Phong,
         sheets: 128,
-        light_size: 512,
+        light_size: 640,
         view: (Vec3::new(0.5, 1.7, 3.4), Vec3::new(0.05, 0.32, 0.0), 36.0),
         background: Some(Vec3::new(0.09, 0.1, 0.12)),
         exposure: 1.0,
