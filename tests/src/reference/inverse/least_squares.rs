@@ -204,7 +204,7 @@ pub(super) fn cholesky(matrix: &Dense, right: &[f64]) -> Option<Vec<f64>> {
             let left = matrix[i][j] - dot(&lower[i][..j], &lower[j][..j]);
             lower[i][j] = if i == j {
                 // Less is what rounding leaves of a singular matrix.
-                if !(left > 1e-14 * matrix[i][i]) {
+                if left <= 1e-14 * matrix[i][i] || !left.is_finite() {
                     return None;
                 }
                 left.sqrt()

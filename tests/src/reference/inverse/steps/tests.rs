@@ -162,6 +162,26 @@ fn an_index_that_rises_evenly_makes_catenaries_in_any_box() {
 }
 
 #[test]
+fn the_first_turn_is_by_the_gradient_where_the_step_began() {
+    let volume = unit_box();
+    let index = Grid::from_fn([1, 8, 1], |p| 1.2 + p.y * p.y);
+    let ray = ray([-1.0, 0.3, 0.5], [0.0, 0.4, 0.5]);
+    let step = 0.1;
+    // Between values the index is straight.
+    let between = |y: f64| {
+        let low = (y * 8.0 - 0.5).floor();
+        let value = |i: f64| 1.2 + ((i + 0.5) / 8.0).powi(2);
+        value(low) + (value(low + 1.0) - value(low)) * (y * 8.0 - 0.5 - low)
+    };
+    let slope = (between(0.4 + 1.0 / 16.0) - between(0.4 - 1.0 / 16.0)) * 8.0;
+    let turned = ray.direction * between(0.4) + Vec3::new(0.0, slope * step, 0.0);
+    let second = Vec3::new(0.0, 0.4, 0.5) + ray.direction * step + turned.normalised() * (0.5 * step);
+    let samples = bent(&volume, &index, step, &ray);
+    assert!((samples[1].unit - second).length() < 1e-14, "{:?} {second:?}", samples[1]);
+    assert!(samples.len() > 8 && samples[0].length == step && samples[1].length == step);
+}
+
+#[test]
 fn a_ray_that_goes_round_ends() {
     // A ray around the middle of n = 1 / r keeps its distance; sooner or later its steps are all spent.
     let volume = unit_box();
