@@ -8,19 +8,28 @@ use super::least_squares::{Dense, Normal, cholesky};
 /// any other, or where rounding keeps the bounds undecided.
 #[must_use]
 pub fn bounded(normal: &Normal, upper: f64) -> Option<Vec<f64>> {
-    let (matrix, n) = (&normal.matrix, normal.right.len());
-    if (0..n).any(|i| matrix[i][i] <= 0.0) {
+    if (0..normal.right.len()).any(|i| normal.matrix[i][i] <= 0.0) {
         return None;
     }
-    let mut values = vec![0.0; n];
-    // Cyclic descent only to begin near: every value in turn to where f is least.
-    for _ in 0..200 {
-        for i in 0..n {
-            let product: f64 = matrix[i].iter().zip(&values).map(|(entry, value)| entry * value).sum();
-            let slope = product - normal.right[i];
-            values[i] = (values[i] - slope / matrix[i][i]).clamp(0.0, upper);
+    decided(normal, upper, descended(normal, upper, 200))
+}
+
+/// Somewhere near the solution, by cyclic descent: every value in turn to where f is least.
+fn descended(normal: &Normal, upper: f64, rounds: usize) -> Vec<f64> {
+    let mut values = vec![0.0; normal.right.len()];
+    for _ in 0..rounds {
+        for i in 0..values.len() {
+            let row = &normal.matrix[i];
+            let product: f64 = row.iter().zip(&values).map(|(entry, value)| entry * value).sum();
+            values[i] = (values[i] - (product - normal.right[i]) / row[i]).clamp(0.0, upper);
         }
     }
+    values
+}
+
+/// The solution from any values between the bounds.
+fn decided(normal: &Normal, upper: f64, mut values: Vec<f64>) -> Option<Vec<f64>> {
+    let (matrix, n) = (&normal.matrix, normal.right.len());
     let mut free: Vec<bool> = values.iter().map(|&value| value > 0.0 && value < upper).collect();
     let scale = normal.right.iter().fold(f64::MIN_POSITIVE, |most, right| most.max(right.abs()));
     for _ in 0..20 * n + 20 {

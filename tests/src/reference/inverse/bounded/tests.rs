@@ -52,6 +52,25 @@ fn it_is_the_best_of_all_sets_of_bounds() {
 }
 
 #[test]
+fn it_is_the_same_from_wherever_one_begins() {
+    for (seed, upper) in [(1, 1.0), (2, 0.3), (3, f64::INFINITY), (4, 1.0)] {
+        let normal = system(40, seed);
+        let found = bounded(&normal, upper).expect("decided");
+        assert!(found.iter().filter(|&&value| value == 0.0).count() > 5);
+        let most = upper.min(2.0);
+        let inside = numbers(seed).take(40).map(|number| number * most).collect();
+        for begin in [vec![0.0; 40], vec![most; 40], inside, descended(&normal, upper, 3)] {
+            let other = decided(&normal, upper, begin).expect("decided");
+            assert!(found.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-9));
+            assert!(kkt_violation(&normal, &other, upper) < 1e-12);
+        }
+        // What descent finds goes towards the same.
+        let near = descended(&normal, upper, 100_000);
+        assert!(found.iter().zip(&near).all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+}
+
+#[test]
 fn without_need_of_bounds_it_is_the_free_solution() {
     let mut normal = system(8, 3);
     let known: Vec<f64> = numbers(6).take(8).collect();
