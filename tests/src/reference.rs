@@ -3,6 +3,7 @@
 
 pub mod camera;
 pub mod fourier;
+pub mod inverse;
 pub mod light;
 pub mod noise;
 pub mod painterly;
