@@ -43,6 +43,8 @@ pub use mesh::{Bounds, DEFAULT_ALBEDO, Mesh, MeshDefect};
 pub use models::{aeroplane, dart, desk, mushrooms, teapot};
 pub use particles::{Particle, Particles, burst};
 pub use random::Random;
+#[cfg(feature = "command")]
+pub(crate) use random::{fractal_noise, turbulence};
 pub use shapes::{cuboid, plane, sphere, torus};
 pub use solids::{solid_plate, solid_ring};
 #[cfg(feature = "command")]

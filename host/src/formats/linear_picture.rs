@@ -14,23 +14,39 @@ pub struct PictureError {
     pub reason: String,
 }
 
-/// A picture in linear light.
+/// Pixels of a picture.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LinearPicture {
+pub struct PicturePixels {
     /// Width and height in pixels, positive.
     pub size: [u32; 2],
-    /// Linear RGB, not multiplied by alpha, and alpha; rows from the top. What the file holds, finite or not.
+    /// RGB, not multiplied by alpha, and alpha, which is 1 where there is none; rows from the top. What the file holds, finite or not.
     pub pixels: Vec<[f32; 4]>,
-    /// Whether the file holds numbers of 8 or 16 bits that stand for sRGB, 0..1, and not linear ones.
-    pub encoded: bool,
 }
 
-/// Reads a .png, whose colours are taken as sRGB, or an .exr or .hdr, whose colours are linear. Without alpha it is 1.
+/// Reads a .png, whose colours are taken as sRGB, or an .exr or .hdr, whose colours are linear, as linear RGB.
 ///
 /// # Errors
 /// [`PictureError`].
-pub fn read_linear_picture(path: impl AsRef<Path>) -> Result<LinearPicture, PictureError> {
-    let path = path.as_ref();
+pub fn read_linear_picture(path: impl AsRef<Path>) -> Result<PicturePixels, PictureError> {
+    let (mut picture, encoded) = read(path.as_ref())?;
+    if encoded {
+        for [r, g, b, _] in &mut picture.pixels {
+            [r, g, b].into_iter().for_each(|value| *value = crate::data::linear_from_srgb(*value));
+        }
+    }
+    Ok(picture)
+}
+
+/// Like [`read_linear_picture`] for what is no light, such as weights: numbers as they are, those of a .png over the greatest.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn read_picture_values(path: impl AsRef<Path>) -> Result<PicturePixels, PictureError> {
+    read(path.as_ref()).map(|(picture, _)| picture)
+}
+
+/// The picture, and whether its numbers stand for sRGB.
+fn read(path: &Path) -> Result<(PicturePixels, bool), PictureError> {
     let failed = |reason: String| PictureError { path: path.to_owned(), reason };
     let encoded = match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
         Some("png") => true,
@@ -49,15 +65,8 @@ pub fn read_linear_picture(path: impl AsRef<Path>) -> Result<LinearPicture, Pict
     if size.contains(&0) {
         return Err(failed("it has no pixels".to_owned()));
     }
-    let decode = |value: f32| if encoded { crate::data::linear_from_srgb(value) } else { value };
-    let pixels = picture
-        .pixels()
-        .map(|pixel| {
-            let [r, g, b, alpha] = pixel.0;
-            [decode(r), decode(g), decode(b), alpha]
-        })
-        .collect();
-    Ok(LinearPicture { size, pixels, encoded })
+    let pixels = picture.pixels().map(|pixel| pixel.0).collect();
+    Ok((PicturePixels { size, pixels }, encoded))
 }
 
 #[cfg(test)]
@@ -71,14 +80,16 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         crate::formats::write_png(at("a.png"), 2, 1, &[255, 188, 0, 255, 0, 255, 255, 51]).unwrap();
         let png = read_linear_picture(at("a.png")).unwrap();
-        assert_eq!((png.size, png.encoded), ([2, 1], true));
+        assert_eq!(png.size, [2, 1]);
         assert!((png.pixels[0][1] - 0.5029).abs() < 1e-3, "{:?}", png.pixels);
         assert!((png.pixels[1][3] - 0.2).abs() < 1e-6 && png.pixels[1][..3] == [0.0, 1.0, 1.0]);
+        let values = read_picture_values(at("a.png")).unwrap();
+        assert!((values.pixels[0][1] - 188.0 / 255.0).abs() < 1e-6, "{:?}", values.pixels);
         crate::formats::write_exr(at("a.exr"), 1, 2, &[0.5, -0.25, 7.0, f32::NAN, 1.0, f32::INFINITY])
             .unwrap();
         let exr = read_linear_picture(at("a.exr")).unwrap();
         assert_eq!((exr.size, exr.pixels[0]), ([1, 2], [0.5, -0.25, 7.0, 1.0]));
-        assert!(exr.pixels[1][0].is_nan() && exr.pixels[1][2] == f32::INFINITY && !exr.encoded);
+        assert!(exr.pixels[1][0].is_nan() && exr.pixels[1][2] == f32::INFINITY);
         // One pixel of Radiance's format: (128, 64, 32) / 256 * 2^(130 - 128).
         let mut hdr = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n".to_vec();
         hdr.extend([128, 64, 32, 130]);
