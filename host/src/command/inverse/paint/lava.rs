@@ -4,7 +4,6 @@
 use super::{Canvas, Painted, luminance, smooth};
 use crate::data::{fractal_noise, turbulence};
 use glam::Vec3;
-use std::f32::consts::FRAC_PI_2;
 
 /// Opacity from which on a pixel counts as part of the plume.
 const MATTER: f32 = 0.15;
@@ -37,7 +36,7 @@ impl Lava {
             let heat = self.heat(across, up);
             // Red light from the foot, and what is far up as it was.
             let near = smooth(0.95, 0.0, up / self.reach.max(1e-3));
-            let cast = Vec3::ONE.lerp(Vec3::new(1.5, 0.42, 0.16), near);
+            let cast = Vec3::ONE.lerp(Vec3::new(0.55, 0.1, 0.035), near);
             let grey = Vec3::splat(luminance(before));
             let smoke = grey.lerp(before, 0.3 + 0.7 * (1.0 - near)) * cast;
             let coverage = smooth(0.0, 2.0 * MATTER, opaque(pixel));
@@ -48,25 +47,25 @@ impl Lava {
     /// 0..1 at a place of the plume: `across` from -1 at its left side to 1 at its right, `up` from 0 to 1.
     fn heat(&self, across: f32, up: f32) -> f32 {
         // On a cylinder, half of which is seen.
-        let angle = self.azimuth + across.clamp(-1.0, 1.0) * FRAC_PI_2;
-        let around = Vec3::new(angle.sin(), 0.0, angle.cos());
-        let at = 1.3 * around + Vec3::Y * (4.5 * up);
-        let warp = |lane: u64| fractal_noise(self.seed.wrapping_add(lane), 1.7 * at, 3) - 0.5;
-        let warped = at * Vec3::new(1.6, 0.75, 1.6) + 1.5 * Vec3::new(warp(1), warp(2), warp(3));
-        // Turbulence has creases, and they are the veins.
-        let crease = turbulence(self.seed.wrapping_add(4), warped, 3);
-        let vein = smooth(0.24, 0.03, crease);
-        let patches = smooth(0.3, 0.62, fractal_noise(self.seed.wrapping_add(9), 1.1 * at, 2));
+        let angle = self.azimuth + across.clamp(-1.0, 1.0).asin();
+        let at = Vec3::new(1.2 * angle.sin(), 5.0 * up, 1.2 * angle.cos());
+        let warp = |lane: u64| fractal_noise(self.seed.wrapping_add(lane), 1.5 * at, 3) - 0.5;
+        let warped = at * Vec3::new(1.4, 0.9, 1.4) + 1.6 * Vec3::new(warp(1), warp(2), warp(3));
+        // Turbulence has creases, and they are the veins: broad at the foot, thin where they end.
         let height = smooth(1.0, 0.1, up / self.reach.max(1e-3));
+        let crease = turbulence(self.seed.wrapping_add(4), warped, 2);
+        let width = 0.08 + 0.24 * height;
+        let vein = smooth(width, 0.15 * width, crease);
+        let patches = smooth(0.3, 0.6, fractal_noise(self.seed.wrapping_add(9), 1.1 * at, 2));
         // Inside, near the foot, all glows.
-        let core = 0.55 * smooth(0.3, 0.0, up) * (1.0 - 0.6 * across * across);
-        (vein * height * (0.35 + 0.65 * patches) + core * (0.6 + 0.4 * vein)).clamp(0.0, 1.0)
+        let core = 0.6 * smooth(0.35, 0.0, up) * (1.0 - 0.7 * across * across);
+        (vein * height.sqrt() * (0.45 + 0.55 * patches) + core * (0.5 + 0.5 * vein)).clamp(0.0, 1.0)
     }
 }
 
 /// From black over red and orange to yellow, 0..1; linear RGB, the red channel of the hottest 1.
 fn ember(heat: f32) -> Vec3 {
-    Vec3::new(heat.powf(1.3), 0.62 * heat.powf(2.6), 0.16 * heat.powf(5.0))
+    Vec3::new(heat.powf(1.2), 0.55 * heat.powf(2.8), 0.12 * heat.powf(5.0))
 }
 
 /// Left and right sides of the plume in each row, and its first and last row.

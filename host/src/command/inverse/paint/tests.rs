@@ -3,114 +3,215 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
+
+/// Grey, a little brighter to the right.
+fn grey(size: [u32; 2]) -> Canvas {
+    let count = size[0] * size[1];
+    let light = |i: u32| 0.3 + 0.4 * (i % size[0]) as f32 / size[0] as f32;
+    Canvas::new(size, (0..count).map(|i| Vec3::splat(light(i))).collect())
+}
+
+fn mean(values: &[f32]) -> f32 {
+    values.iter().sum::<f32>() / values.len() as f32
+}
+
+const SUN: Logo = Logo { mark: Mark::Sun, middle: Vec2::ZERO, radius: 0.8, turn: 0.0, shade: 0.5 };
 
 #[test]
-fn scratch_pictures() {
-    use crate::formats::write_png;
-    let out = std::path::Path::new("/tmp/ii_pictures");
-    std::fs::create_dir_all(out).unwrap();
-    let save = |name: &str, canvas: &Canvas| {
-        let bytes: Vec<u8> = canvas
-            .pixels
-            .iter()
-            .flat_map(|c| c.to_array())
-            .map(|v| (255.0 * crate::data::srgb_from_linear(v.max(0.0)) + 0.5) as u8)
-            .collect();
-        write_png(out.join(name), canvas.size[0], canvas.size[1], &bytes).unwrap();
+fn marks_cover_as_much_at_any_size_and_nothing_outside_their_circle() {
+    for mark in [Mark::Sun, Mark::Leaf] {
+        let logo = Logo { mark, middle: Vec2::new(0.2, -0.1), turn: 0.3, ..SUN };
+        let shares = [48, 96, 384].map(|side| {
+            let canvas = grey([side * 3 / 2, side]);
+            let painted = logo.paint(&canvas, &[]);
+            for (pixel, coverage) in painted.coverage.iter().enumerate() {
+                assert!((0.0..=1.0).contains(coverage));
+                let away = canvas.place(pixel).distance(logo.middle);
+                assert!(away < logo.radius + 1.5 * canvas.pixel() || *coverage == 0.0, "{mark:?} at {away}");
+            }
+            // Borders are soft: some pixels are covered in part.
+            let part = painted.coverage.iter().filter(|part| **part > 0.05 && **part < 0.95).count();
+            assert!(part > side as usize, "{mark:?}: {part}");
+            mean(&painted.coverage)
+        });
+        assert!(shares[2] > 0.05 && shares[2] < 0.5, "{mark:?}: {shares:?}");
+        for share in shares {
+            assert!((share / shares[2] - 1.0).abs() < 0.02, "{mark:?}: {shares:?}");
+        }
+    }
+}
+
+#[test]
+fn a_sun_covers_its_disc_and_is_alike_at_each_eighth_of_a_turn() {
+    let canvas = grey([384, 384]);
+    let painted = SUN.paint(&canvas, &[]);
+    // Its disc has 0.47 of its radius; around it there is a gap.
+    let within = |limit: f32| {
+        let parts = painted.coverage.iter().enumerate();
+        let near = parts.filter(|(pixel, _)| canvas.place(*pixel).length() < limit * SUN.radius);
+        near.map(|(_, coverage)| coverage * canvas.pixel().powi(2)).sum::<f32>()
     };
-    for (name, volume, height) in [
-        ("cloud", crate::data::cloud([96, 56, 80], 7), 4.5f32),
-        ("plume", crate::data::plume([64, 160, 64], 7), 5.6),
-    ] {
-        let mid = 0.5 * (volume.bounds().min + volume.bounds().max);
-        let size = if name == "cloud" { [480u32, 320u32] } else { [320, 480] };
-        let unit = volume.world_from_unit.inverse();
-        let read = |p: Vec3| {
-            let u = unit.transform_point3(p);
-            if u.min_element() < 0.0 || u.max_element() >= 1.0 {
-                return 0.0;
-            }
-            let i: Vec<usize> = (0..3).map(|a| (u[a] * volume.size[a] as f32) as usize).collect();
-            volume.values[(i[2] * volume.size[1] as usize + i[1]) * volume.size[0] as usize + i[0]]
-        };
-        let l = Vec3::new(0.5, 0.7, 0.5).normalize();
-        let mut px = vec![];
-        let mut matter = vec![];
-        let blank = Canvas::new(size, vec![]);
-        for i in 0..(size[0] * size[1]) as usize {
-            let p = blank.place(i) * 0.5 * height;
-            let mut t = 1.0f32;
-            let mut c = 0.0;
-            for s in 0..100 {
-                let z = 3.0 - 6.0 * s as f32 / 100.0;
-                let x = mid + Vec3::new(p.x, p.y, z);
-                let e = read(x);
-                if e <= 0.0 {
-                    continue;
-                }
-                let a = 1.0 - (-e * 0.06f32).exp();
-                let mut o = 0.0;
-                for k in 0..20 {
-                    o += read(x + l * (0.15 * (k as f32 + 0.5))) * 0.15;
-                }
-                c += t * a * (0.75 * (-o * 0.5f32).exp() + 0.1);
-                t *= 1.0 - a;
-            }
-            px.push(Vec3::splat(c) + t * Vec3::new(0.05, 0.09, 0.16));
-            matter.push(1.0 - t);
-        }
-        let canvas = Canvas::new(size, px);
-        save(&format!("{name}.png"), &canvas);
-        if name == "cloud" {
-            for (n, mark, radius) in [("sun", Mark::Sun, 0.5), ("leaf", Mark::Leaf, 0.55)] {
-                let logo = Logo {
-                    mark,
-                    middle: Vec2::new(0.0, 0.05),
-                    radius,
-                    turn: if n == "leaf" { -0.5 } else { 0.1 },
-                    shade: 0.5,
-                };
-                save(&format!("{n}.png"), &logo.paint(&canvas, &matter).canvas);
-                let flat = Canvas::new([256, 256], vec![Vec3::splat(0.9); 65536]);
-                save(
-                    &format!("{n}_flat.png"),
-                    &Logo { middle: Vec2::ZERO, radius: 0.9, shade: 0.0, ..logo }.paint(&flat, &[]).canvas,
-                );
-            }
-            save(
-                "grade.png",
-                &Grade {
-                    contrast: 1.6,
-                    middle: 0.5,
-                    saturation: 1.2,
-                    shade: Vec3::new(0.75, 0.8, 1.5),
-                    light: Vec3::new(1.2, 1.0, 0.75),
-                }
-                .apply(&canvas),
-            );
-        } else {
-            for (n, azimuth) in [("lava0", 0.0), ("lava60", 1.0472)] {
-                save(
-                    &format!("{n}.png"),
-                    &Lava { azimuth, seed: 3, radiance: 1.6, reach: 0.8 }.paint(&canvas, &matter).canvas,
-                );
-            }
+    let disc = PI * (0.47 * SUN.radius).powi(2);
+    assert!((within(0.52) / disc - 1.0).abs() < 2e-3, "{} of {disc}", within(0.52));
+    assert!(within(1.1) > 1.2 * disc);
+    let turned = |turn: f32| Logo { turn, ..SUN }.paint(&canvas, &[]).coverage;
+    let apart =
+        |other: &[f32]| painted.coverage.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(apart(&turned(TAU / 8.0)) < 0.05 && apart(&turned(TAU / 16.0)) > 0.9);
+    let leaf = |turn: f32| Logo { mark: Mark::Leaf, turn, ..SUN }.paint(&canvas, &[]);
+    assert!(apart(&leaf(0.0).coverage) > 0.9);
+    // A quarter to the left: what was at (x, y) is at (-y, x).
+    let (upright, left) = (leaf(0.0).coverage, leaf(FRAC_PI_2).coverage);
+    for pixel in 0..upright.len() {
+        let (x, y) = (pixel % 384, pixel / 384);
+        assert!((upright[pixel] - left[(383 - x) * 384 + y]).abs() < 1e-2, "{x} {y}");
+    }
+}
+
+#[test]
+fn paint_holds_on_matter_alone_and_keeps_its_shade() {
+    let canvas = grey([64, 64]);
+    let none = SUN.paint(&canvas, &[0.0; 4096]);
+    assert_eq!((none.canvas, mean(&none.coverage)), (canvas.clone(), 0.0));
+    let (full, half) = (SUN.paint(&canvas, &[1.0; 4096]), SUN.paint(&canvas, &[0.5; 4096]));
+    assert!((mean(&half.coverage) / mean(&full.coverage) - 0.5).abs() < 1e-5);
+    assert_eq!(full, SUN.paint(&canvas, &[]));
+    // Two pixels of the disc, left and right, are of one colour and as bright as what was there.
+    let at = |painted: &Painted, x: usize| painted.canvas.pixels()[32 * 64 + x];
+    let flat = Logo { shade: 0.0, ..SUN }.paint(&canvas, &[]);
+    assert_eq!(at(&flat, 25), at(&flat, 39));
+    let shaded = Logo { shade: 1.0, ..SUN }.paint(&canvas, &[]);
+    let ratio = at(&shaded, 25) / at(&shaded, 39);
+    let expected = canvas.pixels()[25].x / canvas.pixels()[39].x;
+    assert!((ratio - expected).abs().max_element() < 1e-5, "{ratio} {expected}");
+}
+
+#[test]
+fn grades_do_what_they_say() {
+    let mut random = crate::data::Random::new(1);
+    let pixels = (0..400).map(|_| Vec3::new(random.unit(), random.unit(), random.unit())).collect();
+    let canvas = Canvas::new([20, 20], pixels);
+    let same = Grade::default().apply(&canvas);
+    assert!(same.pixels.iter().zip(&canvas.pixels).all(|(a, b)| a.distance(*b) < 1e-5));
+    let double = Grade { contrast: 2.0, ..Grade::default() }.apply(&canvas);
+    let middle = 0.4 * canvas.bright();
+    for (after, before) in double.pixels.iter().zip(&canvas.pixels) {
+        let stops = [after, before].map(|color| (luminance(*color) / middle).log2());
+        assert!((stops[0] - 2.0 * stops[1]).abs() < 1e-3, "{stops:?}");
+    }
+    let grey = Grade { saturation: 0.0, ..Grade::default() }.apply(&canvas);
+    for (after, before) in grey.pixels.iter().zip(&canvas.pixels) {
+        assert!(after.max_element() - after.min_element() < 1e-5);
+        assert!((luminance(*after) - luminance(*before)).abs() < 1e-5);
+    }
+    let toned = Grade { shade: Vec3::Z, light: Vec3::X, ..Grade::default() };
+    let toned = toned.apply(&Canvas::new([2, 1], vec![Vec3::splat(0.01), Vec3::splat(5.0)]));
+    assert!(toned.pixels[0].z > 50.0 * toned.pixels[0].x && toned.pixels[1].x > 50.0 * toned.pixels[1].z);
+    let black = Canvas::new([2, 1], vec![]);
+    assert_eq!(Grade { contrast: 0.5, ..Grade::default() }.apply(&black), black);
+}
+
+/// A plume that widens upwards, of 64 x 96 pixels, from row 88 up to row 8.
+fn plume(canvas: &Canvas) -> Vec<f32> {
+    let inside = |pixel: usize| {
+        let (x, y) = (pixel % 64, pixel / 64);
+        let half = 6.0 + 18.0 * (88.0 - y as f32) / 80.0;
+        (8..=88).contains(&y) && (x as f32 - 31.5).abs() < half
+    };
+    (0..canvas.pixels.len()).map(|pixel| if inside(pixel) { 0.9 } else { 0.0 }).collect()
+}
+
+#[test]
+fn lava_glows_in_the_plume_from_its_foot_up() {
+    let canvas = Canvas::new([64, 96], vec![Vec3::splat(0.5); 64 * 96]);
+    let matter = plume(&canvas);
+    let lava = Lava { azimuth: 0.4, seed: 3, radiance: 2.0, reach: 0.8 };
+    let painted = lava.paint(&canvas, &matter);
+    assert_eq!(painted, lava.paint(&canvas, &matter));
+    let glow = |painted: &Painted, rows: std::ops::Range<usize>| {
+        let pixels = rows.flat_map(|y| y * 64..y * 64 + 64).filter(|pixel| matter[*pixel] > 0.0);
+        let reds: Vec<f32> = pixels.map(|pixel| painted.canvas.pixels[pixel]).map(|c| c.x - c.z).collect();
+        mean(&reds)
+    };
+    for (pixel, color) in painted.canvas.pixels.iter().enumerate() {
+        assert!(color.is_finite() && color.min_element() >= 0.0 && color.x >= color.y && color.y >= color.z);
+        if matter[pixel] == 0.0 {
+            assert_eq!((*color, painted.coverage[pixel]), (canvas.pixels[pixel], 0.0));
         }
     }
-    for seed in 1..4 {
-        let sky = Canvas::new(
-            [320, 320],
-            (0..320 * 320)
-                .map(|i| {
-                    Vec3::new(0.9, 0.75, 0.5).lerp(Vec3::new(0.35, 0.5, 0.8), 1.0 - (i / 320) as f32 / 320.0)
-                })
-                .collect(),
-        );
-        save(
-            &format!("tree{seed}.png"),
-            &Tree { foot: Vec2::new(0.0, -0.9), height: 1.7, seed, color: Vec3::splat(0.01) }
-                .paint(&sky)
-                .canvas,
-        );
-    }
+    let [foot, middle, top] = [70..88, 40..60, 8..20].map(|rows| glow(&painted, rows));
+    assert!(foot > 1.3 * middle && middle > 3.0 * top.max(0.01), "{foot} {middle} {top}");
+    assert!(painted.canvas.pixels.iter().any(|color| color.x > 1.2));
+    // Once around it is the same plume, elsewhere another side, and another seed has other veins.
+    let apart = |of: Lava| {
+        let other = of.paint(&canvas, &matter).canvas;
+        let differences = other.pixels.iter().zip(&painted.canvas.pixels).map(|(a, b)| a.distance(*b));
+        differences.fold(0.0, f32::max)
+    };
+    assert!(apart(Lava { azimuth: 0.4 + TAU, ..lava }) < 0.01);
+    assert!(apart(Lava { azimuth: 1.4, ..lava }) > 0.3 && apart(Lava { seed: 4, ..lava }) > 0.3);
+    // Without any plume nothing is painted.
+    assert_eq!(lava.paint(&canvas, &[]).canvas, canvas);
+}
+
+/// What is in the middle of a view from 60 degrees lies to the right in one from 30: azimuths grow from +z towards +x, which is to the right
+/// of who looks along -z.
+#[test]
+fn veins_of_views_from_several_sides_are_of_one_plume() {
+    let canvas = Canvas::new([64, 96], vec![Vec3::splat(0.5); 64 * 96]);
+    let matter: Vec<f32> =
+        (0..64 * 96).map(|i| if (2..62).contains(&(i % 64)) { 0.9 } else { 0.0 }).collect();
+    let view = |degrees: f32| {
+        let lava = Lava { azimuth: degrees.to_radians(), seed: 3, radiance: 2.0, reach: 1.5 };
+        lava.paint(&canvas, &matter).canvas
+    };
+    let (first, second) = (view(60.0), view(30.0));
+    let column =
+        |canvas: &Canvas, x: usize| -> Vec<f32> { (10..86).map(|y| canvas.pixels[y * 64 + x].y).collect() };
+    let apart = |a: &[f32], b: &[f32]| mean(&a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>());
+    let middle = column(&first, 32);
+    let best = (2..62)
+        .min_by(|a, b| apart(&column(&second, *a), &middle).total_cmp(&apart(&column(&second, *b), &middle)))
+        .unwrap();
+    // By the sine of 30 degrees of a radius of 30 pixels.
+    assert!((45..=49).contains(&best), "{best}");
+}
+
+#[test]
+fn trees_grow_from_the_ground_and_repeat() {
+    let sky = Canvas::new([160, 160], vec![Vec3::splat(0.8); 160 * 160]);
+    let tree = Tree {
+        foot: Vec2::new(0.1, -0.8),
+        height: 1.5,
+        seed: 2,
+        growth: 1.0,
+        wood: Vec3::new(0.06, 0.03, 0.0),
+        leaves: None,
+    };
+    let shares = [0.0, 0.3, 0.6, 1.0].map(|growth| {
+        let painted = Tree { growth, ..tree }.paint(&sky);
+        for (pixel, coverage) in painted.coverage.iter().enumerate() {
+            assert!((0.0..=1.0).contains(coverage));
+            assert!(*coverage == 0.0 || sky.place(pixel).y > tree.foot.y - sky.pixel());
+            let expected = sky.pixels[pixel].lerp(tree.wood, *coverage);
+            assert!(painted.canvas.pixels[pixel].distance(expected) < 1e-6);
+        }
+        mean(&painted.coverage)
+    });
+    assert!(shares[0] > 0.0 && shares.windows(2).all(|pair| pair[1] > 1.3 * pair[0]), "{shares:?}");
+    assert!((0.08..0.5).contains(&shares[3]), "{shares:?}");
+    assert_eq!(tree.paint(&sky), tree.paint(&sky));
+    assert_ne!(tree.paint(&sky), Tree { seed: 3, ..tree }.paint(&sky));
+    let green = Tree { growth: 0.6, leaves: Some(Vec3::new(0.0, 0.4, 0.0)), ..tree }.paint(&sky);
+    assert!(mean(&green.coverage) > 1.3 * shares[2]);
+    let leaves = green.canvas.pixels.iter().filter(|color| color.y > 0.3 && color.z < 0.1).count();
+    assert!(leaves > 200, "{leaves}");
+    // No leaf on the ground or on the trunk.
+    let trunk = |pixel: usize| sky.place(pixel).y < tree.foot.y + 0.15;
+    assert!(!(0..160 * 160).any(|pixel| trunk(pixel) && green.canvas.pixels[pixel].y > 0.9));
+    assert!(!(0..160 * 160).any(|pixel| {
+        let color = green.canvas.pixels[pixel];
+        trunk(pixel) && color.y > 0.3 && color.z < 0.1
+    }));
 }
