@@ -49,6 +49,7 @@ pub use shapes::{cuboid, plane, sphere, torus};
 pub use solids::{solid_plate, solid_ring};
 #[cfg(feature = "command")]
 pub(crate) use srgb::srgb_from_linear;
+#[cfg(feature = "command")]
 pub(crate) use srgb::{linear_from_hexadecimal, linear_from_srgb};
 pub use terrain::{TerrainParameters, terrain, terrain_height};
 pub use tree::{TreeParameters, tree};

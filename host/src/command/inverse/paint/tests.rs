@@ -63,9 +63,9 @@ fn a_sun_covers_its_disc_and_is_alike_at_each_eighth_of_a_turn() {
     assert!(apart(&leaf(0.0).coverage) > 0.9);
     // A quarter to the left: what was at (x, y) is at (-y, x).
     let (upright, left) = (leaf(0.0).coverage, leaf(FRAC_PI_2).coverage);
-    for pixel in 0..upright.len() {
+    for (pixel, upright) in upright.iter().enumerate() {
         let (x, y) = (pixel % 384, pixel / 384);
-        assert!((upright[pixel] - left[(383 - x) * 384 + y]).abs() < 1e-2, "{x} {y}");
+        assert!((upright - left[(383 - x) * 384 + y]).abs() < 1e-2, "{x} {y}");
     }
 }
 
