@@ -18,7 +18,6 @@ mod particles;
 mod random;
 mod shapes;
 mod solids;
-#[cfg(feature = "command")]
 mod srgb;
 mod terrain;
 mod tree;
@@ -47,10 +46,9 @@ pub use random::Random;
 pub(crate) use random::{fractal_noise, turbulence};
 pub use shapes::{cuboid, plane, sphere, torus};
 pub use solids::{solid_plate, solid_ring};
+pub(crate) use srgb::linear_from_srgb;
 #[cfg(feature = "command")]
-pub(crate) use srgb::srgb_from_linear;
-#[cfg(feature = "command")]
-pub(crate) use srgb::{linear_from_hexadecimal, linear_from_srgb};
+pub(crate) use srgb::{linear_from_hexadecimal, srgb_from_linear};
 pub use terrain::{TerrainParameters, terrain, terrain_height};
 pub use tree::{TreeParameters, tree};
 pub use volume::{Volume, VolumeError, cloud, plume, value_range};
