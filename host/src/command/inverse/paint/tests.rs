@@ -151,6 +151,12 @@ fn lava_glows_in_the_plume_from_its_foot_up() {
     };
     assert!(apart(Lava { azimuth: 0.4 + TAU, ..lava }) < 0.01);
     assert!(apart(Lava { azimuth: 1.4, ..lava }) > 0.3 && apart(Lava { seed: 4, ..lava }) > 0.3);
+    // Above its reach all is as it was.
+    let low = Lava { reach: 0.5, ..lava }.paint(&canvas, &matter).canvas;
+    let apart = |pixel: &usize| low.pixels[*pixel].distance(canvas.pixels[*pixel]);
+    assert!(
+        (0..47 * 64).all(|pixel| apart(&pixel) < 1e-5) && (60 * 64..80 * 64).any(|pixel| apart(&pixel) > 0.3)
+    );
     // Without any plume nothing is painted.
     assert_eq!(lava.paint(&canvas, &[]).canvas, canvas);
 }
@@ -189,6 +195,7 @@ fn trees_grow_from_the_ground_and_repeat() {
         wood: Vec3::new(0.06, 0.03, 0.0),
         leaves: None,
     };
+    let mut tops = Vec::new();
     let shares = [0.0, 0.3, 0.6, 1.0].map(|growth| {
         let painted = Tree { growth, ..tree }.paint(&sky);
         for (pixel, coverage) in painted.coverage.iter().enumerate() {
@@ -197,9 +204,12 @@ fn trees_grow_from_the_ground_and_repeat() {
             let expected = sky.pixels[pixel].lerp(tree.wood, *coverage);
             assert!(painted.canvas.pixels[pixel].distance(expected) < 1e-6);
         }
+        let top = painted.coverage.iter().position(|coverage| *coverage > 0.5).unwrap();
+        tops.push((sky.place(top).y - tree.foot.y) / tree.height);
         mean(&painted.coverage)
     });
     assert!(shares[0] > 0.0 && shares.windows(2).all(|pair| pair[1] > 1.3 * pair[0]), "{shares:?}");
+    assert!(tops[0] < 0.25 && tops[1] < 0.7 && tops[2] < tops[3] && tops[3] > 0.75, "{tops:?}");
     assert!((0.08..0.5).contains(&shares[3]), "{shares:?}");
     assert_eq!(tree.paint(&sky), tree.paint(&sky));
     assert_ne!(tree.paint(&sky), Tree { seed: 3, ..tree }.paint(&sky));
