@@ -267,7 +267,7 @@ impl From<StageError> for CommandError {
         match error {
             StageError::Camera(error) => {
                 let flag = match error {
-                    CameraError::Direction { .. } => "--eye, --target",
+                    CameraError::Direction { .. } | CameraError::Up { .. } => "--eye, --target",
                     CameraError::FieldOfView { .. } => "--fov",
                     CameraError::Planes { .. } => "--near, --far",
                     CameraError::OrthographicPlanes { .. } => "--near, --far",

@@ -7,6 +7,7 @@ mod error;
 mod fit;
 mod gallery;
 mod info;
+mod inverse;
 mod list;
 mod painterly;
 mod parse;

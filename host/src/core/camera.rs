@@ -16,6 +16,12 @@ pub enum CameraError {
         /// Point looked at.
         target: Vec3,
     },
+    /// What should be up runs along the view, or is no direction.
+    #[error("up {up} is impossible: it must be finite, not zero, and not along the view from eye to target")]
+    Up {
+        /// What should be up.
+        up: Vec3,
+    },
     /// The field of view is not an angle that a picture can have.
     #[error("field of view {degrees} degrees is impossible: it must lie between 0.1 and 170")]
     FieldOfView {
@@ -186,12 +192,27 @@ impl Camera {
         }
     }
 
+    /// The same with a direction, of any length, that is up in the picture as far as the view allows.
+    ///
+    /// # Errors
+    /// [`CameraError`] where the view is degenerate.
+    pub fn with_up(of: &View, up: Vec3, viewport: [u32; 2]) -> Result<Self, CameraError> {
+        let view = look_up(of.eye(), of.target(), up)?;
+        match of {
+            View::Perspective(of) => Self::perspective_from(of, view, viewport),
+            View::Orthographic(of) => Self::orthographic_from(of, view, viewport),
+        }
+    }
+
     /// A perspective camera; matrices are composed and inverted in f64.
     ///
     /// # Errors
     /// [`CameraError`] where the view is degenerate.
     pub fn perspective(of: &PerspectiveView, viewport: [u32; 2]) -> Result<Self, CameraError> {
-        let view = look(of.eye, of.target)?;
+        Self::perspective_from(of, look(of.eye, of.target)?, viewport)
+    }
+
+    fn perspective_from(of: &PerspectiveView, view: DMat4, viewport: [u32; 2]) -> Result<Self, CameraError> {
         if !(of.field_of_view >= 0.1 && of.field_of_view <= 170.0) {
             return Err(CameraError::FieldOfView { degrees: of.field_of_view });
         }
@@ -214,7 +235,14 @@ impl Camera {
     /// # Errors
     /// [`CameraError`] where the view is degenerate.
     pub fn orthographic(of: &OrthographicView, viewport: [u32; 2]) -> Result<Self, CameraError> {
-        let view = look(of.eye, of.target)?;
+        Self::orthographic_from(of, look(of.eye, of.target)?, viewport)
+    }
+
+    fn orthographic_from(
+        of: &OrthographicView,
+        view: DMat4,
+        viewport: [u32; 2],
+    ) -> Result<Self, CameraError> {
         if !(of.height > 0.0 && of.height.is_finite()) {
             return Err(CameraError::Height(of.height));
         }
@@ -262,13 +290,26 @@ impl Camera {
 }
 
 fn look(eye: Vec3, target: Vec3) -> Result<DMat4, CameraError> {
+    let forward = forward(eye, target)?;
+    let up = if forward.cross(DVec3::Y).length() < 1e-4 { DVec3::NEG_Z } else { DVec3::Y };
+    Ok(view::look_to_mat4(eye.as_dvec3(), forward, up))
+}
+
+fn look_up(eye: Vec3, target: Vec3, up: Vec3) -> Result<DMat4, CameraError> {
+    let forward = forward(eye, target)?;
+    let along = up.as_dvec3().normalize_or_zero();
+    if !(up.is_finite() && forward.cross(along).length() > 1e-4) {
+        return Err(CameraError::Up { up });
+    }
+    Ok(view::look_to_mat4(eye.as_dvec3(), forward, along))
+}
+
+fn forward(eye: Vec3, target: Vec3) -> Result<DVec3, CameraError> {
     let direction = (target - eye).as_dvec3();
     if !(direction.is_finite() && eye.is_finite() && direction.length() > 1e-6) {
         return Err(CameraError::Direction { eye, target });
     }
-    let forward = direction.normalize();
-    let up = if forward.cross(DVec3::Y).length() < 1e-4 { DVec3::NEG_Z } else { DVec3::Y };
-    Ok(view::look_to_mat4(eye.as_dvec3(), forward, up))
+    Ok(direction.normalize())
 }
 
 fn aspect([width, height]: [u32; 2]) -> Result<f64, CameraError> {
@@ -347,6 +388,20 @@ mod tests {
                 assert!(Camera::new(&wrong.into(), [64, 32]).is_err(), "{wrong:?}");
             }
             assert!(Camera::orthographic(&of, [64, 0]).is_err());
+        }
+    }
+
+    #[test]
+    fn up_is_up_in_the_picture() {
+        let of: View = view().into();
+        assert_eq!(Camera::with_up(&of, 3.0 * Vec3::Y, [64, 32]), Camera::new(&of, [64, 32]));
+        for up in [Vec3::X, Vec3::new(-1.0, -2.0, 0.5), -Vec3::Y] {
+            let camera = Camera::with_up(&of, up, [64, 32]).unwrap();
+            let seen = camera.clip_from_world.project_point3(Vec3::ZERO + 0.1 * up);
+            assert!(seen.x.abs() < 1e-5 && seen.y > 0.01, "{up}: {seen}");
+        }
+        for wrong in [Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0), Vec3::NAN, Vec3::INFINITY] {
+            assert!(matches!(Camera::with_up(&of, wrong, [64, 32]), Err(CameraError::Up { .. })), "{wrong}");
         }
     }
 }

@@ -28,6 +28,7 @@ pub use scan::Scan;
 pub use shadow_views::{Cascades, MAX_VIEWS, ShadowViews};
 pub use sort::{Sort, SortParameters};
 pub use tonemap::{Tonemap, TonemapParameters};
+#[cfg(feature = "command")]
 pub(crate) use transfer::entry;
 pub use transfer::{Transfer, TransferError, TransferPoint};
 #[cfg(feature = "command")]

@@ -17,7 +17,7 @@ pub enum LightImageError {
         given: usize,
     },
     /// The file cannot be read.
-    #[error("light texture {}: {reason}; a .png (sRGB) or .exr (linear) picture is needed", path.display())]
+    #[error("light texture {}: {reason}; a .png (sRGB), .exr or .hdr (linear) picture is needed", path.display())]
     File {
         /// The file.
         path: std::path::PathBuf,
@@ -72,7 +72,7 @@ impl LightImage {
     }
 }
 
-/// Reads a .png, whose values are taken as sRGB, or an .exr, whose values are linear. Transparency darkens.
+/// Reads a .png, whose values are taken as sRGB, or an .exr or .hdr, whose values are linear. Transparency darkens.
 ///
 /// # Errors
 /// [`LightImageError::File`].
@@ -80,22 +80,9 @@ impl LightImage {
 pub fn load_light_image(path: impl AsRef<std::path::Path>) -> Result<LightImage, LightImageError> {
     let path = path.as_ref();
     let failed = |reason: String| LightImageError::File { path: path.to_owned(), reason };
-    let linear = match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
-        Some("png") => false,
-        Some("exr") => true,
-        _ => return Err(failed("its name ends in neither .png nor .exr".to_owned())),
-    };
-    let picture = image::open(path).map_err(|error| failed(error.to_string()))?.into_rgba32f();
-    let size = [picture.width(), picture.height()];
-    let decode = |value: f32| if linear { value } else { super::linear_from_srgb(value) };
-    let texels = picture
-        .pixels()
-        .map(|pixel| {
-            let [r, g, b, alpha] = pixel.0;
-            Vec3::new(decode(r), decode(g), decode(b)) * alpha
-        })
-        .collect();
-    LightImage::new(size, texels).map_err(|error| failed(error.to_string()))
+    let picture = crate::formats::read_linear_picture(path).map_err(|error| failed(error.reason))?;
+    let texels = picture.pixels.iter().map(|[r, g, b, alpha]| Vec3::new(*r, *g, *b) * alpha).collect();
+    LightImage::new(picture.size, texels).map_err(|error| failed(error.to_string()))
 }
 
 #[cfg(test)]

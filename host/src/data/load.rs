@@ -14,7 +14,7 @@ mod volume;
 
 pub use medium::MediumFileError;
 pub use particles::{PARTICLE_COLUMNS, load_particles};
-pub use volume::{load_volume, volume_from_bytes};
+pub use volume::{load_channels, load_volume, volume_from_bytes};
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};

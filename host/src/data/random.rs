@@ -101,7 +101,7 @@ pub(super) fn value_noise_in_space(seed: u64, at: Vec3) -> f32 {
 
 /// Perlin's turbulence: octaves of the distance of that noise from its middle, each of half the strength and size of the one before, over
 /// their greatest sum; creased where the noise passes through its middle.
-pub(super) fn turbulence(seed: u64, at: Vec3, octaves: u32) -> f32 {
+pub(crate) fn turbulence(seed: u64, at: Vec3, octaves: u32) -> f32 {
     let (mut sum, mut most, mut strength, mut scale) = (0.0, 0.0, 1.0, 1.0);
     for octave in 0..octaves {
         let noise = value_noise_in_space(seed.wrapping_add(u64::from(octave)), scale * at);
@@ -114,7 +114,7 @@ pub(super) fn turbulence(seed: u64, at: Vec3, octaves: u32) -> f32 {
 }
 
 /// Octaves of that noise, each of half the strength and size of the one before, over their greatest sum.
-pub(super) fn fractal_noise(seed: u64, at: Vec3, octaves: u32) -> f32 {
+pub(crate) fn fractal_noise(seed: u64, at: Vec3, octaves: u32) -> f32 {
     let (mut sum, mut most, mut strength, mut scale) = (0.0, 0.0, 1.0, 1.0);
     for octave in 0..octaves {
         sum += strength * value_noise_in_space(seed.wrapping_add(u64::from(octave)), scale * at);

@@ -13,6 +13,7 @@ pub(crate) fn srgb_from_linear(value: f32) -> f32 {
 }
 
 /// Linear RGB of `#rrggbb`, sRGB.
+#[cfg(feature = "command")]
 pub(crate) fn linear_from_hexadecimal(text: &str) -> Option<[f32; 3]> {
     let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
     let channel = |at: usize| {
@@ -23,7 +24,7 @@ pub(crate) fn linear_from_hexadecimal(text: &str) -> Option<[f32; 3]> {
     Some([channel(0)?, channel(2)?, channel(4)?])
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "command"))]
 mod tests {
     use super::*;
 

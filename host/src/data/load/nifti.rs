@@ -4,7 +4,7 @@
 use super::medium::MediumFileError;
 use crate::data::Volume;
 use flate2::bufread::MultiGzDecoder;
-use glam::{DMat4, DQuat, DVec3, DVec4};
+use glam::{DMat4, DQuat, DVec3, DVec4, Mat4};
 use nifti::{DataElement, InMemNiftiVolume, NiftiHeader, NiftiType};
 use std::io::{BufRead, Read};
 use std::path::Path;
@@ -36,16 +36,20 @@ fn world_from_patient(millimetres: f64) -> DMat4 {
     DMat4::from_cols(x, y, z, DVec4::W) * DMat4::from_scale(DVec3::splat(1e-3 * millimetres))
 }
 
-/// Reads a volume; its values as they are, times the slope of the file.
-pub(super) fn load(path: &Path, mut bytes: impl BufRead) -> Result<Volume, MediumFileError> {
+/// Reads volumes, as many as `allowed` has; their values as they are, times the slope of the file.
+pub(super) fn load(
+    path: &Path,
+    mut bytes: impl BufRead,
+    allowed: &[u64],
+) -> Result<Vec<Volume>, MediumFileError> {
     let begin = bytes.fill_buf().map_err(|error| MediumFileError::io(path, error))?;
     if begin.starts_with(&[0x1f, 0x8b]) {
-        return read(path, MultiGzDecoder::new(bytes));
+        return read(path, MultiGzDecoder::new(bytes), allowed);
     }
-    read(path, bytes)
+    read(path, bytes, allowed)
 }
 
-fn read(path: &Path, mut bytes: impl Read) -> Result<Volume, MediumFileError> {
+fn read(path: &Path, mut bytes: impl Read, allowed: &[u64]) -> Result<Vec<Volume>, MediumFileError> {
     let broken = |reason: &str| MediumFileError::broken(path, reason);
     let mut begin = Vec::new();
     let read = bytes.by_ref().take(HEADER).read_to_end(&mut begin);
@@ -65,7 +69,7 @@ fn read(path: &Path, mut bytes: impl Read) -> Result<Volume, MediumFileError> {
         return Err(MediumFileError::unsupported(path, reason));
     }
     let kind = header.data_type().map_err(|error| MediumFileError::broken(path, error))?;
-    let size = size(path, &header)?;
+    let size = size(path, &header, allowed)?;
     if !READ.contains(&kind) {
         let reason = format!("voxels of type {kind:?} are not read; convert them to float32 or int16");
         return Err(MediumFileError::unsupported(path, reason));
@@ -85,19 +89,32 @@ fn read(path: &Path, mut bytes: impl Read) -> Result<Volume, MediumFileError> {
     if slope != 0.0 && slope.is_finite() && offset.is_finite() && (slope, offset) != (1.0, 0.0) {
         values.iter_mut().for_each(|value| *value = *value * slope + offset);
     }
-    Volume::new(size, values, world_from_unit(&header, size).as_mat4())
-        .map_err(|error| MediumFileError::broken(path, error))
+    let voxels = size.iter().map(|side| *side as usize).product();
+    let world_from_unit = world_from_unit(&header, size).as_mat4();
+    if values.len() == voxels {
+        return Ok(vec![volume(path, size, values, world_from_unit)?]);
+    }
+    values.chunks(voxels).map(|values| volume(path, size, values.to_vec(), world_from_unit)).collect()
 }
 
-fn size(path: &Path, header: &NiftiHeader) -> Result<[u32; 3], MediumFileError> {
+fn volume(
+    path: &Path,
+    size: [u32; 3],
+    values: Vec<f32>,
+    world_from_unit: Mat4,
+) -> Result<Volume, MediumFileError> {
+    Volume::new(size, values, world_from_unit).map_err(|error| MediumFileError::broken(path, error))
+}
+
+fn size(path: &Path, header: &NiftiHeader, allowed: &[u64]) -> Result<[u32; 3], MediumFileError> {
     let sides = header.dim().map_err(|error| MediumFileError::broken(path, error))?;
     let size = [0, 1, 2].map(|axis| sides.get(axis).map_or(1, |side| u32::from(*side)));
     let several: u64 = sides.iter().skip(3).map(|side| u64::from(*side)).product();
-    if several > 1 {
+    if !allowed.contains(&several) {
         let reason = format!("it holds {several} volumes; extract the one that is meant");
         return Err(MediumFileError::unsupported(path, reason));
     }
-    let voxels = size.iter().fold(1_u64, |product, side| product.saturating_mul(u64::from(*side)));
+    let voxels = size.iter().fold(several, |product, side| product.saturating_mul(u64::from(*side)));
     if voxels > MAX_VOXELS {
         let reason = format!("{size:?} are more than {MAX_VOXELS} voxels; crop or resample the volume");
         return Err(MediumFileError::unsupported(path, reason));
