@@ -3,7 +3,7 @@
 //!
 //! [`Gpu`] opens a device on WebGPU's default limits. [`Shaders`] composes modules and passes.
 //! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
-//! of plain functions that record passes into an encoder: [`painterly`], [`scattering`],
+//! of plain functions that record passes into an encoder: [`inverse`], [`painterly`], [`scattering`],
 //! [`splatting`], [`stylize`], [`transmittance`].
 
 #[cfg(feature = "command")]
@@ -13,6 +13,7 @@ pub mod data;
 #[cfg(feature = "command")]
 pub mod formats;
 mod gpu;
+pub mod inverse;
 pub mod layout;
 pub mod painterly;
 mod pass;

@@ -7,6 +7,7 @@ use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
     TonemapParameters, VolumeSpace,
 };
+use airlight::inverse::{PictureRows, SliceView, VoxelGrid};
 use airlight::painterly::{
     Canvas, IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame,
     StrokeStyle, SurfaceLighting,
@@ -317,6 +318,14 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         dropped_in_all: u32, instances: u32, coarse: u32, medium: u32, fine: u32, frames: u32,
         density_draw: UVec4,
     });
+    twin!(twins: SliceView {
+        origin: Vec3, slices: u32, direction: Vec3, reserved_a: u32, origin_right: Vec3, width: u32,
+        direction_right: Vec3, height: u32, origin_down: Vec3, reserved_b: u32, direction_down: Vec3,
+        reserved_c: u32, axis: Vec3, reserved_d: u32, column_of: Vec4, row_of: Vec4, divisor_of: Vec4,
+        edge_x: Vec3, reserved_e: u32, edge_y: Vec3, reserved_f: u32, edge_z: Vec3, reserved_g: u32,
+    });
+    twin!(twins: PictureRows { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: VoxelGrid { size: UVec3, reserved_a: u32 });
     twin!(twins: Sheets {
         normal: Vec3, first: f32, thickness: f32, count: u32, span: u32, front_to_back: u32,
     });

@@ -15,12 +15,12 @@ mod sheets;
 use airlight::core::{Camera, Light, Transfer, TransferPoint};
 use airlight::data::{Volume, cloud};
 use airlight::splatting::{SheetFrame, SheetInputs, SheetLighting, SheetSettings};
-use airlight_tests::linear::{Mat4, Vec3};
-use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView, View};
+use airlight_tests::linear::Vec3;
+use airlight_tests::reference::camera::Camera as ReferenceCamera;
 use airlight_tests::reference::light::Light as ReferenceLight;
-use airlight_tests::reference::splatting::{Field, Kernel, Medium, Ramp, Scene};
+use airlight_tests::reference::splatting::{Medium, Ramp, Scene};
 use glam::Mat4 as HostMat4;
-use gpu::{gpu, host_camera, host_vector};
+use gpu::gpu;
 use sheet_scene::{directions, field_of, small_cloud};
 use sheets::{Shot, colored, shoot, shoot_all, splats};
 

@@ -179,7 +179,7 @@ fn the_penumbra_of_a_half_plane_on_a_floor_has_its_width() {
                 middle / width
             );
             assert!((found - 1.0).abs() < 0.1 && (middle / width).abs() < 0.06, "{found} {middle}");
-            let dark = profile.iter().filter(|at| at.0 < -1.0 * width).map(|at| at.1).fold(0.0, f32::max);
+            let dark = profile.iter().filter(|at| at.0 < -width).map(|at| at.1).fold(0.0, f32::max);
             assert!(dark < 0.03, "{dark}");
         }
     }

@@ -135,6 +135,10 @@ modules! {
         "core::camera", "painterly::iso_surface", "painterly::stroke", "painterly::stroke_expand"
     ],
     painterly::stroke_targets ["core::finite", "painterly::stroke_update"],
+    inverse::slice_steps [],
+    inverse::basis [],
+    inverse::channels [],
+    inverse::cg_backproject ["inverse::slice_steps"],
     splatting::sheets [],
     splatting::footprint [],
     splatting::splat ["core::camera"],
@@ -220,6 +224,10 @@ passes! {
     painterly/stroke_order,
     painterly/underpaint,
     painterly/draw_strokes,
+    inverse/ray_spans,
+    inverse/render_slices,
+    inverse/weigh_slices,
+    inverse/cg_backproject,
     splatting/find_splats,
     splatting/surfaces,
     splatting/order_splats,
@@ -258,4 +266,4 @@ passes! {
     stylize/evaluate,
 }
 
-systems![core, transmittance, painterly, splatting, scattering, stylize];
+systems![core, transmittance, painterly, inverse, splatting, scattering, stylize];

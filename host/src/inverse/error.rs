@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What is impossible when a volume is solved for.
+
+use crate::gpu::GpuError;
+use crate::pass::PassError;
+
+/// Why a volume cannot be rendered or solved for as asked.
+#[derive(Debug, thiserror::Error)]
+pub enum InverseError {
+    /// A number out of its range.
+    #[error("{name} of {value} is impossible: it must be {range}")]
+    Setting {
+        /// Which.
+        name: &'static str,
+        /// What was given.
+        value: f32,
+        /// What is possible.
+        range: &'static str,
+    },
+    /// A view or a volume whose matrix has no inverse.
+    #[error("the view has no rays: its camera's and its volume's matrices must be finite and have inverses")]
+    Camera,
+    /// Not as many numbers as something holds.
+    #[error("{name} need {needed} numbers and were given {given}")]
+    Count {
+        /// Which.
+        name: &'static str,
+        /// What is needed.
+        needed: usize,
+        /// What was given.
+        given: usize,
+    },
+    /// More than the device holds in one piece.
+    #[error(
+        "{name} need {bytes} bytes in one piece and the device takes {limit}: take a coarser volume or smaller views"
+    )]
+    Memory {
+        /// Which.
+        name: &'static str,
+        /// What is needed.
+        bytes: u64,
+        /// What the device takes.
+        limit: u64,
+    },
+    /// A pass cannot be made or run.
+    #[error(transparent)]
+    Pass(#[from] PassError),
+    /// The device failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+/// Refuses a number out of its range.
+pub(super) fn in_range(
+    name: &'static str,
+    value: f32,
+    possible: std::ops::RangeInclusive<f32>,
+    range: &'static str,
+) -> Result<(), InverseError> {
+    if possible.contains(&value) { Ok(()) } else { Err(InverseError::Setting { name, value, range }) }
+}

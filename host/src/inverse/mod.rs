@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Volumes from pictures: the host's side of `wgsl/inverse`.
+//!
+//! Rendering a volume is linear in its emission and albedo, and so is its optical depth in its extinction: pictures are `W a`.
+//! [`Projector`] renders (`W`) and projects pictures back into the volume (the transpose of `W`), with the same weights and without
+//! storing a matrix.
+
+mod error;
+mod projector;
+mod view;
+
+pub use error::InverseError;
+pub use projector::{Basis, Channels, Collected, Fields, Medium, Projector, Solved, ViewImages};
+pub use view::{PictureRows, SliceView, VoxelGrid};

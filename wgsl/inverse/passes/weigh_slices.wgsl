@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: What each step of a ray sends back into the volume: a pixel's value times the step's weight.
+// source: Klehm, "Stylized scattering", thesis, 7.4.1; see inverse/render_slices, whose weights these are.
+// note: Dispatch over some rows of the picture of a view, then inverse/cg_backproject with the same rows. For extinction no pass is needed:
+// note: a step weighs its length.
+// definition ALBEDO: weights of albedo; else of emission.
+// definition RGB: three channels, each by itself; else one.
+// binding view: the view.
+// binding spans: which part of each ray lies in the volume, rg32float.
+// binding rows: which rows of the picture.
+// binding picture: what is projected back.
+// binding extinction: of the medium, 1/m.
+// binding scattered: radiance that an albedo of 1 scatters towards the eye; with ALBEDO.
+// binding weighed: out, columns, rows of the picture from the first on, slices; r32float, rgba32float with RGB.
+
+#import airlight::inverse::slice_steps::{SliceView, PictureRows, slice_ray, slices_of, slice_part}
+#import airlight::inverse::channels::{channels_of, texel_of, all_channels}
+#import airlight::inverse::basis::triangle_field
+
+@group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
+@group(#{GROUP}) @binding(1) var spans: texture_2d<f32>;
+@group(#{GROUP}) @binding(2) var<uniform> rows: PictureRows;
+@group(#{GROUP}) @binding(3) var picture: texture_2d<f32>;
+@group(#{GROUP}) @binding(4) var extinction: texture_3d<f32>;
+#ifdef ALBEDO
+@group(#{GROUP}) @binding(5) var scattered: texture_3d<f32>;
+#endif
+#ifdef RGB
+@group(#{GROUP}) @binding(6) var weighed: texture_storage_3d<rgba32float, write>;
+#else
+@group(#{GROUP}) @binding(6) var weighed: texture_storage_3d<r32float, write>;
+#endif
+
+@compute @workgroup_size(16, 8)
+fn weigh_slices(@builtin(global_invocation_id) id: vec3<u32>) {
+    let pixel = vec2<u32>(id.x, id.y + rows.first);
+    if id.y >= rows.count || any(pixel >= vec2<u32>(view.width, view.height)) {
+        return;
+    }
+    let ray = slice_ray(view, vec2<f32>(pixel) + 0.5);
+    let span = textureLoad(spans, min(pixel, textureDimensions(spans) - 1u), 0).xy;
+    let slices = slices_of(view, ray, span);
+    let climbs = dot(ray.direction, view.axis) >= 0.0;
+    let value = channels_of(textureLoad(picture, min(pixel, textureDimensions(picture) - 1u), 0));
+    var depth = all_channels(0.0);
+    for (var step = slices.x; step < slices.y; step++) {
+        let slice = select(slices.y - 1u - (step - slices.x), step, climbs);
+        let part = slice_part(view, ray, span, slice);
+        let passed = channels_of(triangle_field(extinction, part.place)) * part.metres;
+        var weight = exp(-depth) * (1.0 - exp(-passed));
+#ifdef ALBEDO
+        weight *= channels_of(triangle_field(scattered, part.place));
+#endif
+        textureStore(weighed, vec3<u32>(id.xy, slice), texel_of(value * weight));
+        depth += passed;
+    }
+}
