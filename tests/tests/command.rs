@@ -92,7 +92,7 @@ fn list_of_a_pass_says_what_run_needs() {
 #[test]
 fn list_refuses_names_that_are_not_there() {
     let at = folder();
-    refuses(at.path(), &["list", "nope"], 2, &["`nope`", "core, painterly, scattering"]);
+    refuses(at.path(), &["list", "nope"], 2, &["`nope`", "core, inverse, painterly"]);
     refuses(at.path(), &["list", "core/nope"], 2, &["core/nope", "core/scan"]);
     refuses(at.path(), &["list", "core/scan:nope"], 2, &["core/scan", "nope", "default"]);
     refuses(at.path(), &["list", "airlight::nope"], 2, &["airlight::nope", "airlight::core::phase"]);
