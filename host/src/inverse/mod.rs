@@ -7,8 +7,10 @@
 
 mod error;
 mod projector;
+mod solver;
 mod view;
 
 pub use error::InverseError;
 pub use projector::{Basis, Channels, Collected, Fields, Medium, Projector, Solved, ViewImages};
+pub use solver::{Regulariser, Solver, SolverPart, SolverSums, Target, Unknown};
 pub use view::{PictureRows, SliceView, VoxelGrid};

@@ -123,11 +123,11 @@ pub struct Projector {
 }
 
 /// Threads of a group along the axes of a picture.
-const TILE: [u32; 2] = [16, 8];
+pub(super) const TILE: [u32; 2] = [16, 8];
 /// Threads of a group along the axes of a volume.
-const BRICK: [u32; 3] = [8, 4, 4];
+pub(super) const BRICK: [u32; 3] = [8, 4, 4];
 
-fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
+pub(super) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(TILE[0]), height.div_ceil(TILE[1]), 1]
 }
 
@@ -170,6 +170,29 @@ impl Projector {
             medium,
             piece: gpu.limits.max_storage_buffer_binding_size,
         })
+    }
+
+    /// What it solves for.
+    pub fn solved(&self) -> Solved {
+        self.solved
+    }
+
+    /// Of pictures and volumes.
+    pub fn channels(&self) -> Channels {
+        self.channels
+    }
+
+    /// Of textures of pictures and volumes.
+    pub(super) fn format(&self) -> TextureFormat {
+        self.channels.format()
+    }
+
+    /// Of passes that have as many channels.
+    pub(super) fn definitions(&self) -> Definitions {
+        match self.channels {
+            Channels::One => Definitions::new(),
+            Channels::Rgb => Definitions::new().flag("RGB"),
+        }
     }
 
     /// Pictures of a view. `depths`: metres along each view ray to the first surface, row after row; none where there are no

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::inverse::solver_steps
+// summary: Steps of conjugate gradients between bounds, for least squares whose matrix is a rendering.
+// source: Klehm, "Stylized scattering", thesis, 7.4.1 and 7.4.2; Polak and Ribiere's direction, restarted; Shewchuk (1994).
+// note: What is minimised is sum C (W a - o)^2 + l |L a|^2 + s |a|^2 + t |a - 1|^2: its half gradient is W'C(W a - o) + l L'L a + s a + t (a - 1),
+// note: and it is subtracted; the thesis says "adding". Clamping breaks the recursion of the residual, which then stalls, so the gradient
+// note: is computed anew in every iteration; a voxel at a bound to which the gradient pushes it is left out, and where the set of those
+// note: changes the direction starts afresh.
+// note: Each channel is a system of its own with its own lengths of steps.
+
+/// One volume that is solved for. 48 bytes.
+struct SolverPart {
+    /// Voxels along x, y and z.
+    size: vec3<u32>,
+    /// Where its sums begin, groups.
+    first_group: u32,
+    /// Weight of the squared Laplacian.
+    laplacian: f32,
+    /// Weight of the squared value.
+    smallness: f32,
+    /// Weight of the squared difference from 1.
+    oneness: f32,
+    /// Least value.
+    low: f32,
+    /// Greatest value.
+    high: f32,
+    /// Groups of all volumes that are solved for.
+    groups: u32,
+    reserved_a: u32,
+    reserved_b: u32,
+}
+
+/// Sums of groups, and where those of pictures begin. 16 bytes.
+struct SolverSums {
+    /// Groups of all volumes that are solved for: their sums come first, twice.
+    groups: u32,
+    /// First sum of a picture.
+    first_picture: u32,
+    /// Sums of pictures.
+    pictures: u32,
+    /// From 0.
+    iteration: u32,
+}
+
+/// What is left of a half gradient as the way downhill, at a value between its bounds.
+fn downhill(part: SolverPart, value: f32, gradient: f32) -> f32 {
+    let held = (value <= part.low && gradient > 0.0) || (value >= part.high && gradient < 0.0);
+    return select(-gradient, 0.0, held);
+}
+
+/// Share of the direction before that the next one keeps. `square`: of the way downhill; `product`: of it and the one before; `before`: square of
+/// that one; `restart`: whether the set of voxels at bounds has changed.
+fn kept_direction(square: f32, product: f32, before: f32, restart: bool) -> f32 {
+    let kept = max(square - product, 0.0) / max(before, 1e-30);
+    // More than this says that the one before was no descent at all.
+    return select(min(kept, 1e4), 0.0, restart || before <= 0.0);
+}
+
+/// Length of a step along a direction. `descent`: product of the way downhill and the direction; `curvature`: of the direction, squared by the matrix.
+fn step_length(descent: f32, curvature: f32) -> f32 {
+    return select(0.0, descent / max(curvature, 1e-30), curvature > 0.0 && descent > 0.0);
+}
