@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::solver_steps
 // summary: Steps of conjugate gradients between bounds, for least squares whose matrix is a rendering.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1 and 7.4.2; Polak and Ribiere's direction, restarted; Shewchuk (1994).
+// source: Klehm, "Stylized scattering", thesis, 7.4.1 and 7.4.2; the direction of Polak and Ribiere (1969); Shewchuk (1994).
 // note: What is minimised is sum C (W a - o)^2 + l |L a|^2 + s |a|^2 + t |a - 1|^2: its half gradient is W'C(W a - o) + l L'L a + s a + t (a - 1),
 // note: and it is subtracted; the thesis says "adding". Clamping breaks the recursion of the residual, which then stalls, so the gradient
-// note: is computed anew in every iteration; a voxel at a bound to which the gradient pushes it is left out, and where the set of those
-// note: changes the direction starts afresh.
+// note: is computed anew in every iteration; a voxel at a bound to which the gradient pushes it is left out. Of Polak and Ribiere's factor only
+// note: what is positive is taken: the direction starts afresh by itself where the set of those voxels changes much. Starting afresh at
+// note: every change is slower where thousands of voxels come and go.
 // note: Each channel is a system of its own with its own lengths of steps.
 
 /// One volume that is solved for. 48 bytes.
@@ -42,6 +43,16 @@ struct SolverSums {
     iteration: u32,
 }
 
+/// How far the solver goes, by channel. 48 bytes.
+struct SolverScalars {
+    /// What is kept of the direction before.
+    kept: vec4<f32>,
+    /// Length of the step along the direction.
+    step: vec4<f32>,
+    /// Square of the way downhill.
+    square: vec4<f32>,
+}
+
 /// What is left of a half gradient as the way downhill, at a value between its bounds.
 fn downhill(part: SolverPart, value: f32, gradient: f32) -> f32 {
     let held = (value <= part.low && gradient > 0.0) || (value >= part.high && gradient < 0.0);
@@ -49,11 +60,11 @@ fn downhill(part: SolverPart, value: f32, gradient: f32) -> f32 {
 }
 
 /// Share of the direction before that the next one keeps. `square`: of the way downhill; `product`: of it and the one before; `before`: square of
-/// that one; `restart`: whether the set of voxels at bounds has changed.
-fn kept_direction(square: f32, product: f32, before: f32, restart: bool) -> f32 {
+/// that one; `first`: whether there is none before.
+fn kept_direction(square: f32, product: f32, before: f32, first: bool) -> f32 {
     let kept = max(square - product, 0.0) / max(before, 1e-30);
     // More than this says that the one before was no descent at all.
-    return select(min(kept, 1e4), 0.0, restart || before <= 0.0);
+    return select(min(kept, 1e4), 0.0, first || before <= 0.0);
 }
 
 /// Length of a step along a direction. `descent`: product of the way downhill and the direction; `curvature`: of the direction, squared by the matrix.

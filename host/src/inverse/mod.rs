@@ -12,5 +12,5 @@ mod view;
 
 pub use error::InverseError;
 pub use projector::{Basis, Channels, Collected, Fields, Medium, Projector, Solved, ViewImages};
-pub use solver::{Regulariser, Solver, SolverPart, SolverSums, Target, Unknown};
+pub use solver::{Regulariser, Solver, SolverPart, SolverScalars, SolverSums, Target, Unknown};
 pub use view::{PictureRows, SliceView, VoxelGrid};

@@ -9,7 +9,7 @@ use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use encase::ShaderType;
-use glam::UVec3;
+use glam::{UVec3, Vec4};
 use wgpu::TextureFormat::R32Float;
 
 /// The uniform `SolverPart` of `inverse/solver_steps`.
@@ -48,6 +48,17 @@ pub struct SolverSums {
     pub pictures: u32,
     /// From 0.
     pub iteration: u32,
+}
+
+/// The uniform `SolverScalars` of `inverse/solver_steps`, by channel.
+#[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
+pub struct SolverScalars {
+    /// What is kept of the direction before.
+    pub kept: Vec4,
+    /// Length of the step along the direction.
+    pub step: Vec4,
+    /// Square of the way downhill.
+    pub square: Vec4,
 }
 
 /// What is known of a volume beforehand, as multiples of the mean of W'C W 1 over all voxels that are solved for.

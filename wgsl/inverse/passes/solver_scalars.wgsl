@@ -52,11 +52,11 @@ fn choose_direction(@builtin(local_invocation_index) thread: u32) {
     let product = total(thread, counts.groups, counts.groups);
     if thread == 0u {
         let before = scalars[2];
-        let restart = product.w > 0.0 || counts.iteration == 0u;
+        let first = counts.iteration == 0u;
         scalars[0] = vec4<f32>(
-            kept_direction(square.x, product.x, before.x, restart),
-            kept_direction(square.y, product.y, before.y, restart),
-            kept_direction(square.z, product.z, before.z, restart),
+            kept_direction(square.x, product.x, before.x, first),
+            kept_direction(square.y, product.y, before.y, first),
+            kept_direction(square.z, product.z, before.z, first),
             0.0
         );
         scalars[2] = square;

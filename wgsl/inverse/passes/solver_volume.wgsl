@@ -15,7 +15,7 @@
 // binding sums: of each group two by channel: square and product of the ways downhill, or descent and curvature.
 // binding scalars: of inverse/solver_scalars.
 
-#import airlight::inverse::solver_steps::{SolverPart, downhill}
+#import airlight::inverse::solver_steps::{SolverPart, SolverScalars, downhill}
 
 @group(#{GROUP}) @binding(0) var<uniform> part: SolverPart;
 @group(#{GROUP}) @binding(1) var<storage, read_write> solved: array<u32>;
@@ -25,7 +25,7 @@
 @group(#{GROUP}) @binding(5) var<storage, read_write> direction: array<f32>;
 @group(#{GROUP}) @binding(6) var<storage, read_write> roughness: array<f32>;
 @group(#{GROUP}) @binding(7) var<storage, read_write> sums: array<vec4<f32>>;
-@group(#{GROUP}) @binding(8) var<uniform> scalars: array<vec4<f32>, 3>;
+@group(#{GROUP}) @binding(8) var<uniform> scalars: SolverScalars;
 
 #ifdef RGB
 const CHANNELS: u32 = 3u;
@@ -44,6 +44,7 @@ var<workgroup> shared_sums: array<vec4<f32>, 128>;
 
 /// A voxel of a dispatch.
 struct Voxel {
+    /// Along x, y and z.
     id: vec3<u32>,
     /// In vectors of a number a voxel.
     index: u32,
@@ -157,8 +158,6 @@ fn solver_gradient(
             downward[place] = way;
             gradient[place] = 0.0;
         }
-        let before = solved[min(voxel.index, arrayLength(&solved) - 1u)];
-        product.w = select(0.0, 1.0, before != (1u | held));
         solved[min(voxel.index, arrayLength(&solved) - 1u)] = 1u | held;
     }
     let place = group_index(group, groups);
@@ -179,7 +178,7 @@ fn solver_direction(
         let held = solved[min(voxel.index, arrayLength(&solved) - 1u)] >> 1u;
         for (var channel = 0u; channel < CHANNELS; channel++) {
             let place = place_of(voxel.index, channel);
-            let kept = scalars[0][channel] * direction[place];
+            let kept = scalars.kept[channel] * direction[place];
             let next = select(downward[place] + kept, 0.0, ((held >> channel) & 1u) == 1u);
             descent[channel] = downward[place] * next;
             direction[place] = next;
@@ -214,7 +213,7 @@ fn solver_advance(@builtin(global_invocation_id) id: vec3<u32>) {
     if voxel.counts {
         for (var channel = 0u; channel < CHANNELS; channel++) {
             let place = place_of(voxel.index, channel);
-            solution[place] = clamp(solution[place] + scalars[1][channel] * direction[place], part.low, part.high);
+            solution[place] = clamp(solution[place] + scalars.step[channel] * direction[place], part.low, part.high);
         }
     }
 }
