@@ -125,12 +125,12 @@ fn solve(case: &Case, iterations: u32, random: &mut Random) -> (Vec<f32>, [f64; 
         Medium { extinction: volume(EXTINCTION, &extinction), scattered: volume([1; 3], &scattered) };
     let projector =
         Projector::new(gpu(), shaders(), case.solved, Channels::One, Basis::Triangle, medium).unwrap();
-    let target = |((_, camera), (wanted, weights)): (&(ReferenceCamera, Camera), (&Vec<f32>, &Vec<f32>))| {
+    let mut targets = Vec::new();
+    for ((_, camera), (wanted, weights)) in cameras().iter().zip(wanted.iter().zip(&weights)) {
         let view = SliceView::new(camera, placed(), EXTINCTION, SLICES).unwrap();
         let view = projector.view(gpu(), &view, None).unwrap();
-        Target { view, wanted: wanted.clone(), weights: weights.clone() }
-    };
-    let targets = cameras().iter().zip(wanted.iter().zip(&weights)).map(target).collect();
+        targets.push(Target { view, wanted: wanted.clone(), weights: weights.clone() });
+    }
     let mut solver = Solver::new(gpu(), shaders(), projector, targets, &own).unwrap();
     for _ in 0..iterations {
         solver.iterate(gpu()).unwrap();
