@@ -15,6 +15,7 @@ pub mod formats;
 mod gpu;
 pub mod inverse;
 pub mod layout;
+mod out_of_range;
 pub mod painterly;
 mod pass;
 mod resource;
@@ -29,6 +30,7 @@ pub mod transmittance;
 
 pub use airlight_validate as validate;
 pub use gpu::{Gpu, GpuError};
+pub use out_of_range::OutOfRange;
 pub use pass::{Bound, Pass, PassError, RenderStages, Resource};
 pub use resource::{Buffer, Sampler, Texture};
 pub use shaders::Shaders;

@@ -400,7 +400,7 @@ fn impossible_surfaces_are_errors() {
         let error = settings.check().unwrap_err();
         assert!(error.to_string().starts_with(name), "{error}");
     }
-    assert!(matches!(SurfaceLighting::towards(Vec3::ZERO), Err(E::Setting { .. })));
+    assert!(matches!(SurfaceLighting::towards(Vec3::ZERO), Err(E::Setting(_))));
     let dark = SurfaceLighting { ambient: Vec3::splat(-0.1), ..SurfaceLighting::towards(Vec3::Y).unwrap() };
     assert!(dark.check().unwrap_err().to_string().starts_with("ambient"));
     let transfer = |table: &[[f32; 4]]| Transfer::new(gpu(), table).err().unwrap();

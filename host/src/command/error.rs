@@ -9,7 +9,7 @@ use crate::scenes::SceneError;
 use crate::splatting::SplattingError;
 use crate::stylize::StylizeError;
 use crate::transmittance::TransmittanceError;
-use crate::{GpuError, PassError, StageError};
+use crate::{GpuError, OutOfRange, PassError, StageError};
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
@@ -192,23 +192,23 @@ impl From<SplattingError> for CommandError {
     fn from(error: SplattingError) -> Self {
         use SplattingError as E;
         let flag = match &error {
-            E::Setting { name: "number of sheets", .. } => "--sheets",
-            E::Setting { name: "side of a picture", .. } => "--size, --light-size",
-            E::Setting { name: "extinction", .. } => "--extinction-scale",
-            E::Setting { name: "ambient radiance", .. } => "--ambient",
-            E::Setting { name: "mean cosine", .. } => "--g",
-            E::Setting { name: "cone of scattered light", .. } => "--cone",
-            E::Setting { name: "free path", .. } => "--free-path",
-            E::Setting { name: "number of sweeps", .. } => "--sweeps",
-            E::Setting { name: "size of the light", .. } => "--light",
-            E::Setting { name: "texels of a soft shadow buffer", .. } | E::LightBuffer { .. } => {
+            E::Setting(OutOfRange { name: "number of sheets", .. }) => "--sheets",
+            E::Setting(OutOfRange { name: "side of a picture", .. }) => "--size, --light-size",
+            E::Setting(OutOfRange { name: "extinction", .. }) => "--extinction-scale",
+            E::Setting(OutOfRange { name: "ambient radiance", .. }) => "--ambient",
+            E::Setting(OutOfRange { name: "mean cosine", .. }) => "--g",
+            E::Setting(OutOfRange { name: "cone of scattered light", .. }) => "--cone",
+            E::Setting(OutOfRange { name: "free path", .. }) => "--free-path",
+            E::Setting(OutOfRange { name: "number of sweeps", .. }) => "--sweeps",
+            E::Setting(OutOfRange { name: "size of the light", .. }) => "--light",
+            E::Setting(OutOfRange { name: "texels of a soft shadow buffer", .. }) | E::LightBuffer { .. } => {
                 "--light-size"
             }
             E::LightInside(_) | E::LightTooNear(_) | E::LightBehind { .. } => "--light",
             E::NoPolygons => "--mesh",
             E::Light(error) => return StageError::Light(error.clone()).into(),
             E::Volume(_) | E::Voxels(_) => return Self::failure(format!("--volume: {error}")),
-            E::Setting { .. } | E::Viewport { .. } | E::Pass(_) => return Self::failure(error),
+            E::Setting(_) | E::Viewport { .. } | E::Pass(_) => return Self::failure(error),
         };
         Self::misuse(flag, error)
     }
@@ -227,20 +227,21 @@ impl From<PainterlyError> for CommandError {
     fn from(error: PainterlyError) -> Self {
         use PainterlyError as E;
         let flag = match &error {
-            E::Setting { name: "iso-value", .. } => "--iso",
-            E::Setting { name: "steps per voxel", .. } => "--steps",
-            E::Setting { name: "radiance of the light" | "ambient radiance", .. } => "--exposure",
-            E::Setting { name: "underpainting", .. } => "--underpainting",
+            E::Setting(OutOfRange { name: "iso-value", .. }) => "--iso",
+            E::Setting(OutOfRange { name: "steps per voxel", .. }) => "--steps",
+            E::Setting(OutOfRange { name: "radiance of the light" | "ambient radiance", .. }) => "--exposure",
+            E::Setting(OutOfRange { name: "underpainting", .. }) => "--underpainting",
             E::ClipPlanes(_)
-            | E::Setting { name: "length of a clip plane's normal" | "offset of a clip plane", .. } => {
-                "--clip"
-            }
+            | E::Setting(OutOfRange {
+                name: "length of a clip plane's normal" | "offset of a clip plane",
+                ..
+            }) => "--clip",
             E::Size { .. } => "--size",
             E::Volume(_) | E::Space => return Self::failure(format!("--volume: {error}")),
             E::Function(_) | E::Entry { .. } | E::Range(..) => {
                 return Self::failure(format!("--transfer: {error}"));
             }
-            E::Setting { .. } | E::Table { .. } | E::NoCurvature | E::Pass(_) => return Self::failure(error),
+            E::Setting(_) | E::Table { .. } | E::NoCurvature | E::Pass(_) => return Self::failure(error),
         };
         Self::misuse(flag, error)
     }

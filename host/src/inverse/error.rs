@@ -2,21 +2,15 @@
 //! What is impossible when a volume is solved for.
 
 use crate::gpu::GpuError;
+use crate::out_of_range::OutOfRange;
 use crate::pass::PassError;
 
 /// Why a volume cannot be rendered or solved for as asked.
 #[derive(Debug, thiserror::Error)]
 pub enum InverseError {
     /// A number out of its range.
-    #[error("{name} of {value} is impossible: it must be {range}")]
-    Setting {
-        /// Which.
-        name: &'static str,
-        /// What was given.
-        value: f32,
-        /// What is possible.
-        range: &'static str,
-    },
+    #[error(transparent)]
+    Setting(#[from] OutOfRange),
     /// A view or a volume whose matrix has no inverse.
     #[error("the view has no rays: its camera's and its volume's matrices must be finite and have inverses")]
     Camera,
@@ -48,14 +42,4 @@ pub enum InverseError {
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-}
-
-/// Refuses a number out of its range.
-pub(super) fn in_range(
-    name: &'static str,
-    value: f32,
-    possible: std::ops::RangeInclusive<f32>,
-    range: &'static str,
-) -> Result<(), InverseError> {
-    if possible.contains(&value) { Ok(()) } else { Err(InverseError::Setting { name, value, range }) }
 }

@@ -3,14 +3,16 @@
 //!
 //! Rendering a volume is linear in its emission and albedo, and so is its optical depth in its extinction: pictures are `W a`.
 //! [`Projector`] renders (`W`) and projects pictures back into the volume (the transpose of `W`), with the same weights and without
-//! storing a matrix.
+//! storing a matrix. [`Solver`] finds the volumes whose pictures are nearest to those that are wanted.
 
 mod error;
+mod problem;
 mod projector;
 mod solver;
 mod view;
 
 pub use error::InverseError;
+pub use problem::{Regulariser, Target, Unknown};
 pub use projector::{Basis, Channels, Collected, Fields, Medium, Projector, Solved, ViewImages};
-pub use solver::{Regulariser, Solver, SolverPart, SolverScalars, SolverSums, Target, Unknown};
+pub use solver::{Solver, SolverPart, SolverScalars, SolverSums};
 pub use view::{PictureRows, SliceView, VoxelGrid};

@@ -41,6 +41,14 @@ impl Channels {
         }
     }
 
+    /// Numbers of them that mean something.
+    pub(super) fn used(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Rgb => 3,
+        }
+    }
+
     /// Of textures.
     pub(super) fn format(self) -> TextureFormat {
         match self {

@@ -2,8 +2,8 @@
 //! Views of a volume whose rays go from slice to slice.
 
 use super::InverseError;
-use super::error::in_range;
 use crate::core::Camera;
+use crate::out_of_range::in_range;
 use encase::ShaderType;
 use glam::{DVec3, DVec4, Mat4, UVec3, Vec3, Vec4};
 

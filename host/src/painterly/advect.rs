@@ -2,8 +2,8 @@
 //! Draws noise out along the directions of curvature.
 
 use super::PainterlyError;
-use super::settings::in_range;
 use crate::gpu::Gpu;
+use crate::out_of_range::in_range;
 use crate::pass::{Bound, Pass};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
@@ -36,7 +36,7 @@ impl StreakParameters {
     pub fn check(&self) -> Result<(), PainterlyError> {
         in_range("steps of streaks", self.steps as f32, 0.0..=256.0, "from 0 to 256")?;
         in_range("step of streaks", self.step_length, 0.1..=8.0, "from 0.1 to 8 pixels")?;
-        in_range("contrast of streaks", self.contrast, 0.0..=1.0, "from 0 to 1")
+        Ok(in_range("contrast of streaks", self.contrast, 0.0..=1.0, "from 0 to 1")?)
     }
 }
 

@@ -4,21 +4,15 @@
 use super::MOST_CLIP_PLANES;
 use crate::core::{TransferError, VolumeTextureError};
 use crate::gpu::GpuError;
+use crate::out_of_range::OutOfRange;
 use crate::pass::PassError;
 
 /// Why a surface cannot be seen.
 #[derive(Debug, thiserror::Error)]
 pub enum PainterlyError {
     /// A number out of its range.
-    #[error("{name} of {value} is impossible: it must be {range}")]
-    Setting {
-        /// Which number.
-        name: &'static str,
-        /// What was given.
-        value: f32,
-        /// What is possible.
-        range: &'static str,
-    },
+    #[error(transparent)]
+    Setting(#[from] OutOfRange),
     /// More clip planes than a pass takes.
     #[error("{0} clip planes are too many: at most {MOST_CLIP_PLANES} are taken")]
     ClipPlanes(usize),

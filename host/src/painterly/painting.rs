@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A volume that is painted frame by frame: rays, what lies under strokes, strokes.
 
-use super::settings::in_range;
 use super::{
     BrickRanges, Brushes, IsoBound, IsoForm, IsoFrame, IsoRaycast, IsoSettings, IsoTargets, IsoVolume,
     Orientation, PainterlyError, PainterlyStyle, SolidBricks, StrokeError, StrokeSettings, StrokeStep,
@@ -9,6 +8,7 @@ use super::{
 };
 use crate::core::{Camera, Jitter, Transfer};
 use crate::gpu::Gpu;
+use crate::out_of_range::in_range;
 use crate::pass::{Bound, Pass};
 use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
@@ -50,7 +50,7 @@ impl Canvas {
         for value in self.color.to_array() {
             in_range("colour of the canvas", value, 0.0..=65504.0, "from 0 to 65504")?;
         }
-        in_range("underpainting", self.underpainting, 0.0..=1.0, "from 0 to 1")
+        Ok(in_range("underpainting", self.underpainting, 0.0..=1.0, "from 0 to 1")?)
     }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Colours ridges and valleys.
 
-use super::settings::in_range;
 use super::{IsoBound, PainterlyError};
 use crate::gpu::Gpu;
+use crate::out_of_range::in_range;
 use crate::pass::{Bound, Pass};
 use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;

@@ -3,6 +3,7 @@
 
 use super::{IsoVolume, PainterlyError};
 use crate::core::{Camera, VolumeSpace};
+use crate::out_of_range::in_range;
 use encase::ShaderType;
 use glam::{Mat4, Vec3, Vec4};
 
@@ -87,7 +88,7 @@ impl SurfaceLighting {
         ] {
             in_range(name, value, 0.0..=most, "from 0 to 10000")?;
         }
-        in_range("shininess", self.shininess, 1.0..=most, "from 1 to 10000")
+        Ok(in_range("shininess", self.shininess, 1.0..=most, "from 1 to 10000")?)
     }
 }
 
@@ -205,13 +206,4 @@ impl IsoFrame {
         };
         Ok((space, surface))
     }
-}
-
-pub(super) fn in_range(
-    name: &'static str,
-    value: f32,
-    possible: std::ops::RangeInclusive<f32>,
-    range: &'static str,
-) -> Result<(), PainterlyError> {
-    if possible.contains(&value) { Ok(()) } else { Err(PainterlyError::Setting { name, value, range }) }
 }

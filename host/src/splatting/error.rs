@@ -3,6 +3,7 @@
 
 use crate::core::{LightError, VolumeTextureError};
 use crate::gpu::GpuError;
+use crate::out_of_range::OutOfRange;
 use crate::pass::PassError;
 use glam::Vec3;
 
@@ -10,15 +11,8 @@ use glam::Vec3;
 #[derive(Debug, thiserror::Error)]
 pub enum SplattingError {
     /// A number out of its range.
-    #[error("{name} of {value} is impossible: it must be {range}")]
-    Setting {
-        /// Which.
-        name: &'static str,
-        /// What was given.
-        value: f32,
-        /// What is possible.
-        range: &'static str,
-    },
+    #[error(transparent)]
+    Setting(#[from] OutOfRange),
     /// The volume cannot be uploaded.
     #[error(transparent)]
     Volume(#[from] VolumeTextureError),
@@ -87,13 +81,4 @@ impl From<GpuError> for SplattingError {
     fn from(error: GpuError) -> Self {
         Self::Pass(error.into())
     }
-}
-
-pub(super) fn in_range(
-    name: &'static str,
-    value: f32,
-    possible: std::ops::RangeInclusive<f32>,
-    range: &'static str,
-) -> Result<(), SplattingError> {
-    if possible.contains(&value) { Ok(()) } else { Err(SplattingError::Setting { name, value, range }) }
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Who looks at what in which light, and how sheets are drawn.
 
-use super::error::in_range;
 use super::{Kernel, SplattingError};
 use crate::core::{Camera, DIRECTIONAL, Light};
+use crate::out_of_range::in_range;
 use encase::ShaderType;
 use glam::{Vec2, Vec3};
 
@@ -50,7 +50,7 @@ impl SheetLighting {
         in_range("mean cosine", self.g, -0.99..=0.99, "from -0.99 to 0.99")?;
         in_range("diffuse share", self.diffuse, 0.0..=most, range)?;
         in_range("specular share", self.specular, 0.0..=most, range)?;
-        in_range("shininess", self.shininess, 1.0..=10_000.0, "from 1 to 10000")
+        Ok(in_range("shininess", self.shininess, 1.0..=10_000.0, "from 1 to 10000")?)
     }
 }
 
@@ -112,7 +112,7 @@ impl SoftShadows {
             if directional { (60.0, "from 0 to 60 degrees") } else { (1e6, "from 0 to 1000000 m") };
         in_range("size of the light", self.size, 0.0..=most, range)?;
         in_range("filling of solids", self.filling, 0.0..=1e6, "from 0 to 1000000 m")?;
-        in_range("greatest depth of solids", self.deepest, 0.0..=1e6, "from 0 to 1000000 m")
+        Ok(in_range("greatest depth of solids", self.deepest, 0.0..=1e6, "from 0 to 1000000 m")?)
     }
 }
 

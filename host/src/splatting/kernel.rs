@@ -2,7 +2,7 @@
 //! The kernel of splats.
 
 use super::SplattingError;
-use super::error::in_range;
+use crate::out_of_range::in_range;
 use encase::ShaderType;
 
 /// The uniform `Kernel` of `splatting/footprint`: a Gaussian of voxels less its tangent at a radius, where it ends.

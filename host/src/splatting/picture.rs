@@ -4,7 +4,6 @@
 #[cfg(feature = "command")]
 mod parts;
 
-use super::error::in_range;
 use super::light_path::{DirectLight, LightPath, LightSheets};
 use super::means::Means;
 use super::order::{Order, tiles};
@@ -18,6 +17,7 @@ use super::{
 };
 use crate::core::{Camera, Light};
 use crate::gpu::Gpu;
+use crate::out_of_range::in_range;
 use crate::pass::{Bound, Resource};
 use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light that sheets scatter on, and back.
 
-use super::error::in_range;
 use super::light_path::{LightPath, LightSheets};
 use super::order::tiles;
 use super::passes::LIGHT;
 use super::{ScatteringSettings, SplattingError};
 use crate::gpu::Gpu;
+use crate::out_of_range::in_range;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
@@ -34,7 +34,7 @@ impl ScatteringSettings {
         };
         in_range("cone of scattered light", self.cone, 0.5..=most, range)?;
         in_range("free path", self.free_path, 0.0..=1e6, "from 0 to 1000000 metres")?;
-        in_range("number of sweeps", self.sweeps as f32, 1.0..=16.0, "from 1 to 16")
+        Ok(in_range("number of sweeps", self.sweeps as f32, 1.0..=16.0, "from 1 to 16")?)
     }
 
     fn uniform(&self) -> Scattering {

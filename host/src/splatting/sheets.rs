@@ -2,7 +2,7 @@
 //! Where sheets lie.
 
 use super::SplattingError;
-use super::error::in_range;
+use crate::out_of_range::in_range;
 use encase::ShaderType;
 use glam::{DVec3, UVec2, Vec3};
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The way of the light of an area light through the sheets.
 
-use super::error::in_range;
 use super::light_path::{LightPath, LightSheets};
 use super::order::tiles;
 use super::passes::LIGHT;
@@ -11,6 +10,7 @@ use super::{
 };
 use crate::core::Camera;
 use crate::gpu::Gpu;
+use crate::out_of_range::in_range;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
