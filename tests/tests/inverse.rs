@@ -9,7 +9,7 @@ mod gpu;
 
 use airlight::core::Camera;
 use airlight::inverse::{
-    Basis, Channels, Collected, Fields, InverseError, Medium, Projector, SliceView, Solved,
+    Basis, Channels, Collected, Fields, InverseError, Medium, Projector, ProjectorForm, SliceView, Solved,
 };
 use airlight::{Buffer, Texture};
 use airlight_tests::linear::Vec3;
@@ -126,7 +126,8 @@ fn errors(case: &Case, reference: &ReferenceCamera, camera: &Camera, random_: &m
         extinction: volume(EXTINCTION, &extinction, channels),
         scattered: volume(SCATTERED, &scattered, channels),
     };
-    let projector = Projector::new(gpu(), shaders(), case.solved, channels, case.basis, medium).unwrap();
+    let form = ProjectorForm { solved: case.solved, channels, basis: case.basis };
+    let projector = Projector::new(gpu(), shaders(), form).unwrap();
     let view = SliceView::new(camera, placed(), EXTINCTION, case.slices).unwrap();
     let images = projector.view(gpu(), &view, case.surfaces.then_some(&depths)).unwrap();
     let picture = Texture::storage(gpu(), SIZE, images.rendered.raw.format());
@@ -142,17 +143,17 @@ fn errors(case: &Case, reference: &ReferenceCamera, camera: &Camera, random_: &m
         )
     });
     let wanted = GRIDS.map(|size| {
-        let words: Vec<u8> = (0..count(size)).flat_map(|_| 1_u32.to_le_bytes()).collect();
+        let words: Vec<u8> = (0..count(size)).flat_map(|_| 1_f32.to_le_bytes()).collect();
         Buffer::with_bytes(gpu(), &words, wgpu::BufferUsages::STORAGE)
     });
     let part = |i: usize| Collected { grid: GRIDS[i], wanted: &wanted[i], sums: &collected[i] };
     let mut encoder = gpu().encoder();
-    projector.render(gpu(), &mut encoder, &images, fields).unwrap();
+    projector.render(gpu(), &mut encoder, &images, &medium, fields).unwrap();
     let parts = match case.solved {
         Solved::Both => vec![part(0), part(1)],
         _ => vec![part(own)],
     };
-    projector.backproject(gpu(), &mut encoder, &images, &picture, &parts).unwrap();
+    projector.backproject(gpu(), &mut encoder, &images, &medium, &picture, &parts).unwrap();
     gpu().submit(encoder).unwrap();
     let rendered = images.rendered.read(gpu()).unwrap();
     let back = collected.each_ref().map(|buffer| buffer.read_floats(gpu()).unwrap());

@@ -10,8 +10,8 @@ mod gpu;
 use airlight::Texture;
 use airlight::core::Camera;
 use airlight::inverse::{
-    Basis, Channels, Fields, InverseError, Medium, Projector, Regulariser, SliceView, Solved, Solver, Target,
-    Unknown,
+    Basis, Channels, Fields, InverseError, Medium, Projector, ProjectorForm, Regulariser, SliceView, Solved,
+    Solver, Target, Unknown,
 };
 use airlight_tests::linear::Vec3;
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, View as Perspective};
@@ -21,6 +21,7 @@ use airlight_tests::reference::inverse::{
 };
 use glam::Mat4;
 use gpu::{Random, gpu, shaders};
+use std::sync::Arc;
 
 const EXTINCTION: [u32; 3] = [8, 7, 6];
 const GRIDS: [[u32; 3]; 2] = [[6, 5, 4], [4, 5, 6]];
@@ -121,15 +122,18 @@ fn solve(case: &Case, iterations: u32, random: &mut Random) -> (Vec<f32>, [f64; 
             regulariser: Regulariser { laplacian, smallness, oneness },
         })
         .collect();
-    let medium =
-        Medium { extinction: volume(EXTINCTION, &extinction), scattered: volume([1; 3], &scattered) };
-    let projector =
-        Projector::new(gpu(), shaders(), case.solved, Channels::One, Basis::Triangle, medium).unwrap();
+    let medium = Arc::new(Medium {
+        extinction: volume(EXTINCTION, &extinction),
+        scattered: volume([1; 3], &scattered),
+    });
+    let form = ProjectorForm { solved: case.solved, channels: Channels::One, basis: Basis::Triangle };
+    let projector = Projector::new(gpu(), shaders(), form).unwrap();
     let mut targets = Vec::new();
     for ((_, camera), (wanted, weights)) in cameras().iter().zip(wanted.iter().zip(&weights)) {
         let view = SliceView::new(camera, placed(), EXTINCTION, SLICES).unwrap();
         let view = projector.view(gpu(), &view, None).unwrap();
-        targets.push(Target { view, wanted: wanted.clone(), weights: weights.clone() });
+        let (wanted, weights) = (wanted.clone(), weights.clone());
+        targets.push(Target { view, medium: Arc::clone(&medium), wanted, weights });
     }
     let mut solver = Solver::new(gpu(), shaders(), projector, targets, &own).unwrap();
     for _ in 0..iterations {
@@ -212,9 +216,9 @@ fn own_pictures_come_back() {
     let light = field(&|at| [1.0 + at.x, 0.9, 0.8 - at.y]);
     let emission = field(&|at| [0.6 * (0.5 + at.z), 0.3 * (0.5 + at.y), 0.1]);
     let albedo = field(&|at| [0.8 - 0.5 * at.x, 0.5, 0.5 + 0.6 * at.z]);
-    let medium = || Medium { extinction: rgba(size, &extinction), scattered: rgba(size, &light) };
-    let projector =
-        Projector::new(gpu(), shaders(), Solved::Both, Channels::Rgb, Basis::Triangle, medium()).unwrap();
+    let medium = Arc::new(Medium { extinction: rgba(size, &extinction), scattered: rgba(size, &light) });
+    let form = ProjectorForm { solved: Solved::Both, channels: Channels::Rgb, basis: Basis::Triangle };
+    let projector = Projector::new(gpu(), shaders(), form).unwrap();
     let textures = [rgba(size, &emission), rgba(size, &albedo)];
     let pixels = count([SIZE[0], SIZE[1], 1]);
     let targets = cameras()
@@ -224,10 +228,10 @@ fn own_pictures_come_back() {
             let view = projector.view(gpu(), &view, None).unwrap();
             let fields = Fields { emission: &textures[0], albedo: &textures[1], extinction: &textures[0] };
             let mut encoder = gpu().encoder();
-            projector.render(gpu(), &mut encoder, &view, fields).unwrap();
+            projector.render(gpu(), &mut encoder, &view, &medium, fields).unwrap();
             gpu().submit(encoder).unwrap();
             let wanted = view.rendered.read(gpu()).unwrap();
-            Target { view, wanted, weights: vec![1.0; pixels] }
+            Target { view, medium: Arc::clone(&medium), wanted, weights: vec![1.0; pixels] }
         })
         .collect();
     let touched = extinction.chunks_exact(4).map(|voxel| voxel[0] > 0.0).collect::<Vec<_>>();
@@ -256,7 +260,6 @@ fn own_pictures_come_back() {
 
 #[test]
 fn numbers_that_do_not_fit_are_refused() {
-    let medium = || Medium { extinction: volume([2; 3], &[1.0; 8]), scattered: volume([1; 3], &[1.0]) };
     let unknown = Unknown {
         size: [2; 3],
         solved: vec![true; 8],
@@ -266,9 +269,9 @@ fn numbers_that_do_not_fit_are_refused() {
     };
     let short = Unknown { start: vec![0.0; 7], ..unknown.clone() };
     for unknowns in [vec![], vec![short], vec![unknown.clone(), unknown]] {
-        let projector =
-            Projector::new(gpu(), shaders(), Solved::Emission, Channels::One, Basis::Triangle, medium())
-                .unwrap();
+        let form =
+            ProjectorForm { solved: Solved::Emission, channels: Channels::One, basis: Basis::Triangle };
+        let projector = Projector::new(gpu(), shaders(), form).unwrap();
         let refused = Solver::new(gpu(), shaders(), projector, Vec::new(), &unknowns);
         assert!(matches!(refused.err(), Some(InverseError::Count { .. })));
     }

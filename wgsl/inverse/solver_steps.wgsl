@@ -7,6 +7,7 @@
 // note: is computed anew in every iteration; a voxel at a bound to which the gradient pushes it is left out. Of Polak and Ribiere's factor only
 // note: what is positive is taken: the direction starts afresh by itself where the set of those voxels changes much. Starting afresh at
 // note: every change is slower where thousands of voxels come and go.
+// note: Voxels that many rays meet go slower: one over the row sums of W'C W and the diagonals of the regularisers precondition the system.
 // note: Each channel is a system of its own with its own lengths of steps.
 
 /// One volume that is solved for. 48 bytes.
@@ -27,8 +28,9 @@ struct SolverPart {
     high: f32,
     /// Groups of all volumes that are solved for.
     groups: u32,
+    /// Least of what a pace is one over.
+    steepest: f32,
     reserved_a: u32,
-    reserved_b: u32,
 }
 
 /// Sums of groups, and where those of pictures begin. 16 bytes.
@@ -49,8 +51,15 @@ struct SolverScalars {
     kept: vec4<f32>,
     /// Length of the step along the direction.
     step: vec4<f32>,
-    /// Square of the way downhill.
+    /// Square of the way downhill, times the pace.
     square: vec4<f32>,
+}
+
+/// How far a voxel goes for a slope: one over a bound of its share in the matrix. `sent`: what the weighed pictures of ones send back to it, the
+/// row of W'C W summed up, which no eigenvalue of that matrix scaled by it exceeds.
+fn pace_of(part: SolverPart, sent: f32) -> f32 {
+    // 42 is on the diagonal of L'L where all six neighbours are solved for.
+    return 1.0 / max(sent + 42.0 * part.laplacian + part.smallness + part.oneness, max(part.steepest, 1e-30));
 }
 
 /// What is left of a half gradient as the way downhill, at a value between its bounds.
@@ -59,8 +68,8 @@ fn downhill(part: SolverPart, value: f32, gradient: f32) -> f32 {
     return select(-gradient, 0.0, held);
 }
 
-/// Share of the direction before that the next one keeps. `square`: of the way downhill; `product`: of it and the one before; `before`: square of
-/// that one; `first`: whether there is none before.
+/// Share of the direction before that the next one keeps. `square`: of the way downhill, times the pace; `product`: of it and the one before,
+/// likewise; `before`: square of that one; `first`: whether there is none before.
 fn kept_direction(square: f32, product: f32, before: f32, first: bool) -> f32 {
     let kept = max(square - product, 0.0) / max(before, 1e-30);
     // More than this says that the one before was no descent at all.

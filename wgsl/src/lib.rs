@@ -140,6 +140,7 @@ modules! {
     inverse::channels [],
     inverse::cg_backproject ["inverse::slice_steps"],
     inverse::solver_steps [],
+    inverse::group_sum [],
     splatting::sheets [],
     splatting::footprint [],
     splatting::splat ["core::camera"],

@@ -13,6 +13,8 @@ mod view;
 
 pub use error::InverseError;
 pub use problem::{Regulariser, Target, Unknown};
-pub use projector::{Basis, Channels, Collected, Fields, Medium, Projector, Solved, ViewImages};
+pub use projector::{
+    Basis, Channels, Collected, Fields, Medium, Projector, ProjectorForm, Solved, ViewImages,
+};
 pub use solver::{Solver, SolverPart, SolverScalars, SolverSums};
 pub use view::{PictureRows, SliceView, VoxelGrid};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What is to be solved: volumes that are unknown, and the pictures that are wanted of them.
 
-use super::ViewImages;
+use super::{Medium, ViewImages};
+use std::sync::Arc;
 
 /// What is known of a volume beforehand, as multiples of the mean of W'C W 1 over all voxels that are solved for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -33,6 +34,8 @@ pub struct Unknown {
 pub struct Target {
     /// The view.
     pub view: ViewImages,
+    /// What is known of the medium; views in other light or of another time have others.
+    pub medium: Arc<Medium>,
     /// Less what does not depend on what is solved for: the projector's numbers a pixel.
     pub wanted: Vec<f32>,
     /// How much each pixel counts, from 0 up.

@@ -67,7 +67,18 @@ pub enum Basis {
     Box,
 }
 
-/// What is known of the medium.
+/// What a projector does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ProjectorForm {
+    /// What is solved for.
+    pub solved: Solved,
+    /// Of pictures and volumes.
+    pub channels: Channels,
+    /// Of what is solved for.
+    pub basis: Basis,
+}
+
+/// What is known of the medium, as one view sees it.
 pub struct Medium {
     /// 1/m; 3D, of the projector's channels.
     pub extinction: Texture,
@@ -91,7 +102,7 @@ pub struct Fields<'a> {
 pub struct Collected<'a> {
     /// Voxels along x, y and z.
     pub grid: [u32; 3],
-    /// A word a voxel, 1 where it is solved for, x fastest.
+    /// A number a voxel, 0 where it is not solved for, x fastest.
     pub wanted: &'a Buffer,
     /// Numbers of the projector's channels a voxel, to which is added.
     pub sums: &'a Buffer,
@@ -118,14 +129,12 @@ impl ViewImages {
 
 /// Renders and projects back.
 pub struct Projector {
-    solved: Solved,
-    channels: Channels,
+    form: ProjectorForm,
     spans: Pass,
     render: Pass,
     /// Of emission and of albedo.
     weigh: [Option<Pass>; 2],
     collect: Pass,
-    medium: Medium,
     /// Bytes of weighed steps in one piece at most.
     piece: u64,
 }
@@ -144,14 +153,8 @@ impl Projector {
     ///
     /// # Errors
     /// [`InverseError::Pass`].
-    pub fn new(
-        gpu: &Gpu,
-        shaders: &Shaders,
-        solved: Solved,
-        channels: Channels,
-        basis: Basis,
-        medium: Medium,
-    ) -> Result<Self, InverseError> {
+    pub fn new(gpu: &Gpu, shaders: &Shaders, form: ProjectorForm) -> Result<Self, InverseError> {
+        let ProjectorForm { solved, channels, basis } = form;
         let pass = |name: &str, flags: &[(&str, bool)]| {
             let flags = flags.iter().filter(|(_, set)| *set);
             let definitions = flags.fold(Definitions::new(), |all, (flag, _)| all.flag(*flag));
@@ -166,8 +169,7 @@ impl Projector {
             wanted.then(|| pass("inverse/weigh_slices", &[rgb, ("ALBEDO", albedo)])).transpose()
         };
         Ok(Self {
-            solved,
-            channels,
+            form,
             spans: pass("inverse/ray_spans", &[])?,
             render: pass(
                 "inverse/render_slices",
@@ -175,29 +177,28 @@ impl Projector {
             )?,
             weigh: [weigh(emission, false)?, weigh(albedo, true)?],
             collect: pass("inverse/cg_backproject", &[("PATHS", paths), rgb, boxes])?,
-            medium,
             piece: gpu.limits.max_storage_buffer_binding_size,
         })
     }
 
     /// What it solves for.
     pub fn solved(&self) -> Solved {
-        self.solved
+        self.form.solved
     }
 
     /// Of pictures and volumes.
     pub fn channels(&self) -> Channels {
-        self.channels
+        self.form.channels
     }
 
     /// Of textures of pictures and volumes.
     pub(super) fn format(&self) -> TextureFormat {
-        self.channels.format()
+        self.form.channels.format()
     }
 
     /// Of passes that have as many channels.
     pub(super) fn definitions(&self) -> Definitions {
-        match self.channels {
+        match self.form.channels {
             Channels::One => Definitions::new(),
             Channels::Rgb => Definitions::new().flag("RGB"),
         }
@@ -240,7 +241,7 @@ impl Projector {
         let mut encoder = gpu.encoder();
         self.spans.dispatch_groups(&mut encoder, &bound, "ray_spans", tiles(size))?;
         gpu.submit(encoder)?;
-        let image = || Texture::storage(gpu, size, self.channels.format());
+        let image = || Texture::storage(gpu, size, self.form.channels.format());
         Ok(ViewImages {
             view: uniform,
             size,
@@ -251,7 +252,7 @@ impl Projector {
         })
     }
 
-    /// Records `W a` of a view.
+    /// Records `W a` of a view; of extinction alone nothing of the medium counts.
     ///
     /// # Errors
     /// [`InverseError::Pass`].
@@ -260,10 +261,11 @@ impl Projector {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         view: &ViewImages,
+        medium: &Medium,
         fields: Fields<'_>,
     ) -> Result<(), InverseError> {
         let extinction =
-            if self.solved == Solved::Extinction { fields.extinction } else { &self.medium.extinction };
+            if self.form.solved == Solved::Extinction { fields.extinction } else { &medium.extinction };
         let resources: [(&str, Resource<'_>); 8] = [
             ("view", (&view.view).into()),
             ("spans", (&view.spans).into()),
@@ -272,7 +274,7 @@ impl Projector {
             ("extinction", extinction.into()),
             ("emission", fields.emission.into()),
             ("albedo", fields.albedo.into()),
-            ("scattered", (&self.medium.scattered).into()),
+            ("scattered", (&medium.scattered).into()),
         ];
         let bound = self.render.bind_known(gpu, &resources)?;
         Ok(self.render.dispatch_groups(encoder, &bound, "render_slices", tiles(view.size))?)
@@ -288,25 +290,26 @@ impl Projector {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         view: &ViewImages,
+        medium: &Medium,
         picture: &Texture,
         collected: &[Collected<'_>],
     ) -> Result<(), InverseError> {
         // Without a pass that weighs steps, a step weighs its length.
-        let weighing: Vec<Option<&Pass>> = match self.solved {
+        let weighing: Vec<Option<&Pass>> = match self.form.solved {
             Solved::Extinction => vec![None],
             _ => self.weigh.iter().flatten().map(Some).collect(),
         };
         let [width, height] = view.size;
-        let row = u64::from(width) * u64::from(view.slices) * 4 * self.channels.numbers() as u64;
-        let together = match self.solved {
+        let row = u64::from(width) * u64::from(view.slices) * 4 * self.form.channels.numbers() as u64;
+        let together = match self.form.solved {
             Solved::Extinction => height,
             _ => (self.piece / row.max(1)).clamp(1, u64::from(height)) as u32,
         };
-        let steps = match self.solved {
+        let steps = match self.form.solved {
             Solved::Extinction => [1; 3],
             _ => [width, together, view.slices],
         };
-        let weighed = Texture::storage_volume(gpu, steps, self.channels.format());
+        let weighed = Texture::storage_volume(gpu, steps, self.form.channels.format());
         for (weigh, part) in weighing.into_iter().zip(collected) {
             let size = part.grid;
             let grid = Buffer::uniform(gpu, &VoxelGrid { size: UVec3::from(size), reserved_a: 0 });
@@ -320,8 +323,8 @@ impl Projector {
                     ("rows", (&rows).into()),
                     ("grid", (&grid).into()),
                     ("picture", picture.into()),
-                    ("extinction", (&self.medium.extinction).into()),
-                    ("scattered", (&self.medium.scattered).into()),
+                    ("extinction", (&medium.extinction).into()),
+                    ("scattered", (&medium.scattered).into()),
                     ("weighed", (&weighed).into()),
                     ("solved", part.wanted.into()),
                     ("collected", part.sums.into()),

@@ -18,6 +18,8 @@ use held::{Part, Sitting, bricks, bytes_of, exact};
 
 /// Scalars before the residuals.
 const FIRST_RESIDUAL: usize = 3;
+/// Least of what a pace is one over, of the mean: voxels that hardly any ray meets do not jump.
+const STEEPEST: f32 = 1e-3;
 /// Most iterations of one solver.
 const MOST_ITERATIONS: u32 = 1024;
 
@@ -101,17 +103,18 @@ impl Solver {
         ];
         let bound = passes.scalars.bind_known(gpu, &resources)?;
         let mut solver = Self { projector, passes, scratch, sittings, parts, counts, numbers, bound };
-        solver.regularise(gpu, unknowns)?;
+        solver.prepare(gpu, unknowns)?;
         Ok(solver)
     }
 
     /// Scales the regularisers by the mean of W'C W 1 over the n voxels that are solved for, which is 1'W'C W 1 / n: the weighed squares
-    /// of the pictures of ones. Then the solution begins where it should.
-    fn regularise(&mut self, gpu: &Gpu, unknowns: &[Unknown]) -> Result<(), InverseError> {
+    /// of the pictures of ones; what those send back says how far each voxel goes. Then the solution begins where it should.
+    fn prepare(&mut self, gpu: &Gpu, unknowns: &[Unknown]) -> Result<(), InverseError> {
         let mut encoder = gpu.encoder();
         self.pack(&mut encoder, 0)?;
-        self.pictures(gpu, &mut encoder, "sum_squares")?;
+        self.pictures(gpu, &mut encoder, "weigh_picture")?;
         self.scalars(&mut encoder, "keep_residual")?;
+        self.collect(gpu, &mut encoder)?;
         gpu.submit(encoder)?;
         let squares = self.scratch.scalars.read_floats(gpu)?[4 * FIRST_RESIDUAL..][..3].iter().sum::<f32>();
         let solved = unknowns.iter().flat_map(|unknown| &unknown.solved).filter(|solved| **solved).count();
@@ -122,9 +125,12 @@ impl Solver {
             settings.laplacian = scale * part.regulariser.laplacian;
             settings.smallness = scale * part.regulariser.smallness;
             settings.oneness = scale * part.regulariser.oneness;
+            settings.steepest = scale * STEEPEST;
             part.uniform.write(gpu, settings);
         }
-        Ok(())
+        let mut encoder = gpu.encoder();
+        self.voxels(&mut encoder, "solver_paces")?;
+        Ok(gpu.submit(encoder)?)
     }
 
     /// Puts the solution (0) or the direction (1) where it is rendered from.
@@ -151,7 +157,7 @@ impl Solver {
         let last = last.unwrap_or(first);
         let fields = Fields { emission: &first.texture, albedo: &last.texture, extinction: &first.texture };
         for sitting in &self.sittings {
-            self.projector.render(gpu, encoder, &sitting.view, fields)?;
+            self.projector.render(gpu, encoder, &sitting.view, &sitting.medium, fields)?;
             let groups = tiles(sitting.view.size());
             self.passes.pictures.dispatch_groups(encoder, &sitting.bound, entry, groups)?;
         }
@@ -166,7 +172,8 @@ impl Solver {
             .map(|part| Collected { grid: part.size, wanted: &part.solved, sums: &part.gradient })
             .collect();
         for sitting in &self.sittings {
-            self.projector.backproject(gpu, encoder, &sitting.view, &sitting.difference, &collected)?;
+            let Sitting { view, medium, difference, .. } = sitting;
+            self.projector.backproject(gpu, encoder, view, medium, difference, &collected)?;
         }
         Ok(())
     }
@@ -203,9 +210,8 @@ impl Solver {
         self.voxels(&mut encoder, "solver_gradient")?;
         self.scalars(&mut encoder, "choose_direction")?;
         self.voxels(&mut encoder, "solver_direction")?;
-        self.voxels(&mut encoder, "smooth_direction")?;
         self.pack(&mut encoder, 1)?;
-        self.pictures(gpu, &mut encoder, "sum_squares")?;
+        self.pictures(gpu, &mut encoder, "weigh_picture")?;
         self.voxels(&mut encoder, "solver_curvature")?;
         self.scalars(&mut encoder, "choose_step")?;
         self.voxels(&mut encoder, "solver_advance")?;

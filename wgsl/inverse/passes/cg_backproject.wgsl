@@ -12,7 +12,7 @@
 // binding grid: the voxels.
 // binding picture: what is projected back; with PATHS.
 // binding weighed: of inverse/weigh_slices; without PATHS.
-// binding solved: 1 where a voxel is solved for; others stay as they are. A word a voxel, x fastest.
+// binding solved: 0 where a voxel is not solved for: it stays as it is. A number a voxel, x fastest.
 // binding collected: in and out, a number a voxel; four with RGB, of which the last stays as it is.
 
 #import airlight::inverse::slice_steps::{SliceView, PictureRows, VoxelGrid, slice_ray, slice_part}
@@ -29,7 +29,7 @@
 #else
 @group(#{GROUP}) @binding(5) var weighed: texture_3d<f32>;
 #endif
-@group(#{GROUP}) @binding(6) var<storage, read> solved: array<u32>;
+@group(#{GROUP}) @binding(6) var<storage, read> solved: array<f32>;
 @group(#{GROUP}) @binding(7) var<storage, read_write> collected: array<f32>;
 
 @compute @workgroup_size(8, 4, 4)
@@ -38,7 +38,7 @@ fn cg_backproject(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let index = (id.z * grid.size.y + id.y) * grid.size.x + id.x;
-    if index >= arrayLength(&solved) || solved[index] == 0u {
+    if index >= arrayLength(&solved) || solved[index] == 0.0 {
         return;
     }
 #ifdef BOX

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
-// summary: What is wrong with a picture, weighed, and sums of squares over it.
+// summary: What is wrong with a picture, or the picture itself, weighed, and sums of squares over it.
 // source: Klehm, "Stylized scattering", thesis, 7.4.1: c = W a - o, and per-pixel weights of 7.4.2.
-// note: Dispatch over the picture: weigh_difference before the picture is projected back, sum_squares of the picture of a direction. Sums of groups
-// note: are added up by inverse/solver_scalars, always in the same order.
+// note: Dispatch over the picture: weigh_difference before the picture is projected back, weigh_picture of the picture of a direction. Sums of
+// note: groups are added up by inverse/solver_scalars, always in the same order.
 // definition RGB: three channels; else one.
 // binding rows: `first` is where the sums of this picture begin, groups.
 // binding rendered: the picture, r32float or rgba32float.
 // binding wanted: the picture that is wanted, likewise; for weigh_difference.
 // binding weights: how much each pixel counts, from 0 up, r32float.
-// binding difference: out of weigh_difference, weighed difference, like `rendered`.
+// binding difference: out, what was weighed, like `rendered`.
 // binding sums: out, of each group, weighed sum of squares of the difference, or of the picture, by channel.
 
 #import airlight::inverse::slice_steps::PictureRows
+#import airlight::inverse::group_sum::{group_sum, group_index}
 
 @group(#{GROUP}) @binding(0) var<uniform> rows: PictureRows;
 @group(#{GROUP}) @binding(1) var rendered: texture_2d<f32>;
@@ -24,20 +25,11 @@
 #endif
 @group(#{GROUP}) @binding(5) var<storage, read_write> sums: array<vec4<f32>>;
 
-var<workgroup> shared_sums: array<vec4<f32>, 128>;
-
 /// Adds up what the threads of a group have and keeps it.
 fn keep_sum(thread: u32, group: u32, value: vec4<f32>) {
-    shared_sums[thread] = value;
-    workgroupBarrier();
-    for (var half = 64u; half > 0u; half = half >> 1u) {
-        if thread < half {
-            shared_sums[thread] += shared_sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let sum = group_sum(thread, value);
     if thread == 0u {
-        sums[min(rows.first + group, arrayLength(&sums) - 1u)] = shared_sums[0];
+        sums[min(rows.first + group, arrayLength(&sums) - 1u)] = sum;
     }
 }
 
@@ -56,11 +48,11 @@ fn weigh_difference(
     if inside {
         textureStore(difference, pixel, weight * off);
     }
-    keep_sum(thread, group.y * groups.x + group.x, select(vec4<f32>(0.0), weight * off * off, inside));
+    keep_sum(thread, group_index(group, groups), select(vec4<f32>(0.0), weight * off * off, inside));
 }
 
 @compute @workgroup_size(16, 8)
-fn sum_squares(
+fn weigh_picture(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(local_invocation_index) thread: u32,
     @builtin(workgroup_id) group: vec3<u32>,
@@ -70,5 +62,9 @@ fn sum_squares(
     let pixel = min(id.xy, size - 1u);
     let value = textureLoad(rendered, pixel, 0) * vec4<f32>(1.0, 1.0, 1.0, 0.0);
     let weight = textureLoad(weights, pixel, 0).x;
-    keep_sum(thread, group.y * groups.x + group.x, select(vec4<f32>(0.0), weight * value * value, all(id.xy < size)));
+    let inside = all(id.xy < size);
+    if inside {
+        textureStore(difference, pixel, weight * value);
+    }
+    keep_sum(thread, group_index(group, groups), select(vec4<f32>(0.0), weight * value * value, inside));
 }

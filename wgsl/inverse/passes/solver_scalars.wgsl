@@ -9,6 +9,7 @@
 // binding scalars: on the weighed square of what is wrong, of each iteration.
 
 #import airlight::inverse::solver_steps::{SolverSums, kept_direction, step_length}
+#import airlight::inverse::group_sum::{GROUP_THREADS, group_sum}
 
 @group(#{GROUP}) @binding(0) var<uniform> counts: SolverSums;
 @group(#{GROUP}) @binding(1) var<storage, read> sums: array<vec4<f32>>;
@@ -17,28 +18,16 @@
 /// First of the residuals.
 const RESIDUALS: u32 = 3u;
 
-var<workgroup> shared_sums: array<vec4<f32>, 256>;
-
 /// The sum of `count` sums from `first` on, in all threads.
 fn total(thread: u32, first: u32, count: u32) -> vec4<f32> {
     var sum = vec4<f32>(0.0);
-    for (var place = thread; place < count; place += 256u) {
+    for (var place = thread; place < count; place += GROUP_THREADS) {
         sum += sums[min(first + place, arrayLength(&sums) - 1u)];
     }
-    shared_sums[thread] = sum;
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half = half >> 1u) {
-        if thread < half {
-            shared_sums[thread] += shared_sums[thread + half];
-        }
-        workgroupBarrier();
-    }
-    let all = shared_sums[0];
-    workgroupBarrier();
-    return all;
+    return group_sum(thread, sum);
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(128)
 fn keep_residual(@builtin(local_invocation_index) thread: u32) {
     let square = total(thread, counts.first_picture, counts.pictures);
     if thread == 0u {
@@ -46,7 +35,7 @@ fn keep_residual(@builtin(local_invocation_index) thread: u32) {
     }
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(128)
 fn choose_direction(@builtin(local_invocation_index) thread: u32) {
     let square = total(thread, 0u, counts.groups);
     let product = total(thread, counts.groups, counts.groups);
@@ -63,7 +52,7 @@ fn choose_direction(@builtin(local_invocation_index) thread: u32) {
     }
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(128)
 fn choose_step(@builtin(local_invocation_index) thread: u32) {
     let descent = total(thread, 0u, counts.groups);
     let curvature = total(thread, counts.groups, counts.groups) + total(thread, counts.first_picture, counts.pictures);

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: What the solver does with each voxel: smoothness, gradient, direction and step.
 // source: Klehm, "Stylized scattering", thesis, 7.4.1 and 7.4.2; see inverse/solver_steps.
-// note: Dispatch over the voxels, in an iteration in this order: smooth_solution, solver_gradient, [solver_scalars], solver_direction,
-// note: smooth_direction, solver_curvature, [solver_scalars], solver_advance. Beyond the volume and of voxels that are not solved for there is
-// note: nothing to differ from.
+// note: Dispatch over the voxels: solver_paces once, of what the weighed pictures of ones send back; then in an iteration in this order:
+// note: smooth_solution, solver_gradient, [solver_scalars], solver_direction, solver_curvature, [solver_scalars], solver_advance. Beyond the
+// note: volume and of voxels that are not solved for there is nothing to differ from.
 // definition RGB: three channels, four numbers a voxel; else one.
 // binding part: the volume that is solved for.
-// binding solved: 0 where a voxel is not solved for; else 1, and from bit 1 on which channels are held at a bound.
+// binding solved: the pace of a voxel; 0 where it is not solved for.
 // binding solution: numbers a voxel, x fastest.
 // binding gradient: what was projected back; solver_gradient leaves zeros for the next time.
 // binding downward: the way downhill.
 // binding direction: the direction in which the solution goes.
-// binding roughness: discrete Laplacian of the solution or of the direction.
-// binding sums: of each group two by channel: square and product of the ways downhill, or descent and curvature.
+// binding roughness: discrete Laplacian of the solution.
+// binding sums: of each group two by channel: square and product of the ways downhill, each times the pace, or descent and curvature.
 // binding scalars: of inverse/solver_scalars.
 
-#import airlight::inverse::solver_steps::{SolverPart, SolverScalars, downhill}
+#import airlight::inverse::solver_steps::{SolverPart, SolverScalars, downhill, pace_of}
+#import airlight::inverse::group_sum::{group_sum, group_index}
 
 @group(#{GROUP}) @binding(0) var<uniform> part: SolverPart;
-@group(#{GROUP}) @binding(1) var<storage, read_write> solved: array<u32>;
+@group(#{GROUP}) @binding(1) var<storage, read_write> solved: array<f32>;
 @group(#{GROUP}) @binding(2) var<storage, read_write> solution: array<f32>;
 @group(#{GROUP}) @binding(3) var<storage, read_write> gradient: array<f32>;
 @group(#{GROUP}) @binding(4) var<storage, read_write> downward: array<f32>;
@@ -40,8 +41,6 @@ const SOLUTION: u32 = 0u;
 const DIRECTION: u32 = 1u;
 const ROUGHNESS: u32 = 2u;
 
-var<workgroup> shared_sums: array<vec4<f32>, 128>;
-
 /// A voxel of a dispatch.
 struct Voxel {
     /// Along x, y and z.
@@ -50,18 +49,23 @@ struct Voxel {
     index: u32,
     /// Whether it is solved for.
     counts: bool,
+    /// How far it goes for a slope.
+    pace: f32,
 }
 
 fn index_of(id: vec3<u32>) -> u32 {
     return (id.z * part.size.y + id.y) * part.size.x + id.x;
 }
 
-fn is_solved(id: vec3<u32>) -> bool {
-    return all(id < part.size) && solved[min(index_of(min(id, part.size - 1u)), arrayLength(&solved) - 1u)] != 0u;
+/// The pace of a voxel; 0 of one that is not solved for, or beyond the volume.
+fn pace_at(id: vec3<u32>) -> f32 {
+    let place = min(index_of(min(id, part.size - 1u)), arrayLength(&solved) - 1u);
+    return select(0.0, solved[place], all(id < part.size));
 }
 
 fn voxel_of(id: vec3<u32>) -> Voxel {
-    return Voxel(id, index_of(min(id, part.size - 1u)), is_solved(id));
+    let pace = pace_at(id);
+    return Voxel(id, index_of(min(id, part.size - 1u)), pace != 0.0, pace);
 }
 
 /// Where a channel of a voxel lies.
@@ -87,7 +91,7 @@ fn laplacian_at(which: u32, voxel: Voxel, channel: u32) -> f32 {
         let axis = vec3<u32>(vec3<u32>(side >> 1u) == vec3<u32>(0u, 1u, 2u));
         // Below 0 it wraps to a number that is beyond the volume.
         let near = select(voxel.id + axis, voxel.id - axis, (side & 1u) == 1u);
-        if is_solved(near) {
+        if pace_at(near) != 0.0 {
             sum += value_of(which, place_of(index_of(near), channel)) - own;
         }
     }
@@ -96,22 +100,24 @@ fn laplacian_at(which: u32, voxel: Voxel, channel: u32) -> f32 {
 
 /// Adds up what the threads of a group have and keeps it; `kind`: 0 or 1.
 fn keep_sum(thread: u32, group: u32, kind: u32, value: vec4<f32>) {
-    shared_sums[thread] = value;
-    workgroupBarrier();
-    for (var half = 64u; half > 0u; half = half >> 1u) {
-        if thread < half {
-            shared_sums[thread] += shared_sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let sum = group_sum(thread, value);
     if thread == 0u {
-        sums[min(kind * part.groups + part.first_group + group, arrayLength(&sums) - 1u)] = shared_sums[0];
+        sums[min(kind * part.groups + part.first_group + group, arrayLength(&sums) - 1u)] = sum;
     }
-    workgroupBarrier();
 }
 
-fn group_index(group: vec3<u32>, groups: vec3<u32>) -> u32 {
-    return (group.z * groups.y + group.y) * groups.x + group.x;
+@compute @workgroup_size(8, 4, 4)
+fn solver_paces(@builtin(global_invocation_id) id: vec3<u32>) {
+    let voxel = voxel_of(id);
+    if voxel.counts {
+        var sum = 0.0;
+        for (var channel = 0u; channel < CHANNELS; channel++) {
+            let place = place_of(voxel.index, channel);
+            sum += gradient[place];
+            gradient[place] = 0.0;
+        }
+        solved[min(voxel.index, arrayLength(&solved) - 1u)] = pace_of(part, sum / f32(CHANNELS));
+    }
 }
 
 @compute @workgroup_size(8, 4, 4)
@@ -120,16 +126,6 @@ fn smooth_solution(@builtin(global_invocation_id) id: vec3<u32>) {
     if voxel.counts {
         for (var channel = 0u; channel < CHANNELS; channel++) {
             roughness[place_of(voxel.index, channel)] = laplacian_at(SOLUTION, voxel, channel);
-        }
-    }
-}
-
-@compute @workgroup_size(8, 4, 4)
-fn smooth_direction(@builtin(global_invocation_id) id: vec3<u32>) {
-    let voxel = voxel_of(id);
-    if voxel.counts {
-        for (var channel = 0u; channel < CHANNELS; channel++) {
-            roughness[place_of(voxel.index, channel)] = laplacian_at(DIRECTION, voxel, channel);
         }
     }
 }
@@ -145,20 +141,19 @@ fn solver_gradient(
     var square = vec4<f32>(0.0);
     var product = vec4<f32>(0.0);
     if voxel.counts {
-        var held = 0u;
         for (var channel = 0u; channel < CHANNELS; channel++) {
             let place = place_of(voxel.index, channel);
             let value = solution[place];
             let slope = gradient[place] + part.laplacian * laplacian_at(ROUGHNESS, voxel, channel)
                 + part.smallness * value + part.oneness * (value - 1.0);
             let way = downhill(part, value, slope);
-            square[channel] = way * way;
-            product[channel] = way * downward[place];
-            held |= select(0u, 2u << channel, way == 0.0 && slope != 0.0);
+            square[channel] = voxel.pace * way * way;
+            product[channel] = voxel.pace * way * downward[place];
+            // One that is held at a bound stays there.
+            direction[place] = select(direction[place], 0.0, way == 0.0 && slope != 0.0);
             downward[place] = way;
             gradient[place] = 0.0;
         }
-        solved[min(voxel.index, arrayLength(&solved) - 1u)] = 1u | held;
     }
     let place = group_index(group, groups);
     keep_sum(thread, place, 0u, square);
@@ -175,11 +170,9 @@ fn solver_direction(
     let voxel = voxel_of(id);
     var descent = vec4<f32>(0.0);
     if voxel.counts {
-        let held = solved[min(voxel.index, arrayLength(&solved) - 1u)] >> 1u;
         for (var channel = 0u; channel < CHANNELS; channel++) {
             let place = place_of(voxel.index, channel);
-            let kept = scalars.kept[channel] * direction[place];
-            let next = select(downward[place] + kept, 0.0, ((held >> channel) & 1u) == 1u);
+            let next = voxel.pace * downward[place] + scalars.kept[channel] * direction[place];
             descent[channel] = downward[place] * next;
             direction[place] = next;
         }
@@ -200,7 +193,8 @@ fn solver_curvature(
         for (var channel = 0u; channel < CHANNELS; channel++) {
             let place = place_of(voxel.index, channel);
             let along = direction[place];
-            curvature[channel] = part.laplacian * roughness[place] * roughness[place]
+            let rough = laplacian_at(DIRECTION, voxel, channel);
+            curvature[channel] = part.laplacian * rough * rough
                 + (part.smallness + part.oneness) * along * along;
         }
     }

@@ -3,18 +3,20 @@
 
 use super::super::projector::{BRICK, tiles};
 use super::super::{
-    InverseError, PictureRows, Projector, Regulariser, Target, Unknown, ViewImages, VoxelGrid,
+    InverseError, Medium, PictureRows, Projector, Regulariser, Target, Unknown, ViewImages, VoxelGrid,
 };
 use super::{Passes, Scratch, SolverPart};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Resource};
 use crate::resource::{Buffer, Texture};
 use glam::UVec3;
+use std::sync::Arc;
 use wgpu::TextureFormat::R32Float;
 
 /// What it holds of a view.
 pub(super) struct Sitting {
     pub(super) view: ViewImages,
+    pub(super) medium: Arc<Medium>,
     /// What is wrong with its picture, weighed.
     pub(super) difference: Texture,
     pub(super) bound: Bound,
@@ -26,6 +28,7 @@ pub(super) struct Part {
     pub(super) uniform: Buffer,
     pub(super) settings: SolverPart,
     pub(super) regulariser: Regulariser,
+    /// Its pace, a number a voxel.
     pub(super) solved: Buffer,
     /// Ones where it is solved for, until the solver has scaled its regularisers; then the values to begin with.
     pub(super) solution: Buffer,
@@ -82,7 +85,7 @@ impl Sitting {
             ("sums", (&scratch.sums).into()),
         ];
         let bound = passes.pictures.bind_known(gpu, &resources)?;
-        Ok(Self { view: target.view, difference, bound })
+        Ok(Self { view: target.view, medium: target.medium, difference, bound })
     }
 }
 
@@ -114,15 +117,13 @@ impl Part {
             low: 0.0,
             high: unknown.high,
             groups,
+            steepest: 0.0,
             reserved_a: 0,
-            reserved_b: 0,
         };
         let uniform = Buffer::uniform(gpu, &settings);
-        let words: Vec<u8> =
-            unknown.solved.iter().flat_map(|solved| u32::from(*solved).to_le_bytes()).collect();
-        let solved = Buffer::with_bytes(gpu, &words, wgpu::BufferUsages::STORAGE);
-        let known = |place: usize| f32::from(u8::from(unknown.solved[place / channels]));
-        let ones: Vec<f32> = (0..channels * voxels).map(known).collect();
+        let counts: Vec<f32> = unknown.solved.iter().map(|solved| f32::from(u8::from(*solved))).collect();
+        let solved = Buffer::with_bytes(gpu, &bytes_of(&counts), wgpu::BufferUsages::STORAGE);
+        let ones: Vec<f32> = (0..channels * voxels).map(|place| counts[place / channels]).collect();
         let start = unknown.start.iter().zip(&ones).map(|(value, one)| value * one).collect();
         let solution = Buffer::with_bytes(gpu, &bytes_of(&ones), wgpu::BufferUsages::STORAGE);
         let [gradient, downward, direction, roughness] = [0; 4].map(|_| Buffer::storage(gpu, bytes));

@@ -23,10 +23,10 @@ pub struct SolverPart {
     pub high: f32,
     /// Groups of all volumes that are solved for.
     pub groups: u32,
+    /// Least of what a pace is one over.
+    pub steepest: f32,
     /// Padding.
     pub reserved_a: u32,
-    /// Padding.
-    pub reserved_b: u32,
 }
 
 /// The uniform `SolverSums` of `inverse/solver_steps`.
@@ -49,6 +49,6 @@ pub struct SolverScalars {
     pub kept: Vec4,
     /// Length of the step along the direction.
     pub step: Vec4,
-    /// Square of the way downhill.
+    /// Square of the way downhill, times the pace.
     pub square: Vec4,
 }
