@@ -3,8 +3,9 @@
 // summary: Which pixels and slices a voxel collects from when a picture is projected back into the volume.
 // source: Klehm, "Stylized scattering", thesis, 7.4.1: the transpose of rendering.
 // note: The thesis scatters from pixels to voxels, with additions that race. Here each voxel collects from the few pixels whose samples its
-// note: basis function reaches, always in the same order. Samples lie in their slice, so a pixel with a sample in a part of the slice has its
-// note: middle in the projection of that part; the projection of a box lies within that of its corners.
+// note: basis function reaches, always in the same order. A sample lies on the middle plane of its slice: of rays that cross the slice whole where
+// note: they cross that plane, of others beside a point of the slice. So a pixel with a sample in a support has its middle in the projection of
+// note: the support on that plane, or of its extrusion over the slice; the projection of a box lies within that of its corners.
 
 #import airlight::inverse::slice_steps::SliceView
 
@@ -25,20 +26,26 @@ fn support_of(voxel: vec3<u32>, size: vec3<u32>, reach: f32) -> Support {
     return Support(low / vec3<f32>(size), high / vec3<f32>(size));
 }
 
-/// First slice that has a part of the support and the one past the last.
+/// First slice whose middle plane crosses the support and the one past the last.
 fn slices_of_support(view: SliceView, support: Support) -> vec2<u32> {
     let count = f32(view.slices);
-    let ends = vec2<f32>(dot(support.low, view.axis), dot(support.high, view.axis)) * count;
-    return vec2<u32>(clamp(vec2<f32>(floor(ends.x + 1e-3), ceil(ends.y - 1e-3)), vec2<f32>(0.0), vec2<f32>(count)));
+    let ends = vec2<f32>(dot(support.low, view.axis), dot(support.high, view.axis)) * count - 0.5;
+    // At the ends of a support there is nothing, but at the faces of the box.
+    return vec2<u32>(clamp(vec2<f32>(ceil(ends.x + 1e-3), floor(ends.y - 1e-3) + 1.0), vec2<f32>(0.0), vec2<f32>(count)));
 }
 
-/// First column and row, and the last ones, of pixels whose middles may lie in the projection of what a slice has of a support; none where
-/// the first are greater.
-fn pixels_of_slice(view: SliceView, support: Support, slice: u32) -> vec4<i32> {
-    let sides = vec2<f32>(f32(slice), f32(slice + 1u)) / f32(view.slices);
+/// Whether only rays that cross their slice whole have samples in the support.
+fn only_whole_slices(view: SliceView, support: Support) -> bool {
+    return all(support.low >= view.margin * (1.0 - view.axis)) && all(support.high <= 1.0 - view.margin * (1.0 - view.axis));
+}
+
+/// First column and row, and the last ones, of pixels whose rays may have a sample of a slice in a support; none where the first are greater.
+/// `whole`: whether all these rays cross the slice whole, so that their samples are where they cross its middle plane.
+fn pixels_of_slice(view: SliceView, support: Support, slice: u32, whole: bool) -> vec4<i32> {
     let across = vec3<f32>(1.0) - view.axis;
-    let low = support.low * across + view.axis * max(sides.x, dot(support.low, view.axis));
-    let high = support.high * across + view.axis * min(sides.y, dot(support.high, view.axis));
+    let sides = (f32(slice) + select(vec2<f32>(0.0, 1.0), vec2<f32>(0.5), whole)) / f32(view.slices);
+    let low = support.low * across + view.axis * sides.x;
+    let high = support.high * across + view.axis * sides.y;
     var begin = vec2<f32>(3e38);
     var end = vec2<f32>(-3e38);
     var nearest = 3e38;

@@ -15,10 +15,10 @@
 // binding solved: 0 where a voxel is not solved for: it stays as it is. A number a voxel, x fastest.
 // binding collected: in and out, a number a voxel; four with RGB, of which the last stays as it is.
 
-#import airlight::inverse::slice_steps::{SliceView, PictureRows, VoxelGrid, slice_ray, slice_part}
+#import airlight::inverse::slice_steps::{SliceView, PictureRows, VoxelGrid, SlicePart, slice_ray, slice_part, whole_slice}
 #import airlight::inverse::channels::{channels_of, all_channels}
 #import airlight::inverse::basis::{box_weights, triangle_weights}
-#import airlight::inverse::cg_backproject::{support_of, slices_of_support, pixels_of_slice}
+#import airlight::inverse::cg_backproject::{support_of, slices_of_support, pixels_of_slice, only_whole_slices}
 
 @group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
 @group(#{GROUP}) @binding(1) var spans: texture_2d<f32>;
@@ -48,14 +48,23 @@ fn cg_backproject(@builtin(global_invocation_id) id: vec3<u32>) {
 #endif
     let slices = slices_of_support(view, support);
     let last_row = i32(rows.first + rows.count) - 1;
+    let whole = only_whole_slices(view, support);
     var sum = all_channels(0.0);
     for (var slice = slices.x; slice < slices.y; slice++) {
-        let pixels = pixels_of_slice(view, support, slice);
-        for (var row = max(pixels.y, i32(rows.first)); row <= min(pixels.w, last_row); row++) {
+        var pixels = pixels_of_slice(view, support, slice, whole);
+        pixels.y = max(pixels.y, i32(rows.first));
+        pixels.w = min(pixels.w, last_row);
+        for (var row = pixels.y; row <= pixels.w; row++) {
+            let left = slice_ray(view, vec2<f32>(f32(pixels.x), f32(row)) + 0.5);
             for (var column = pixels.x; column <= pixels.z; column++) {
                 let pixel = vec2<u32>(u32(column), u32(row));
-                let span = textureLoad(spans, pixel, 0).xy;
-                let part = slice_part(view, slice_ray(view, vec2<f32>(pixel) + 0.5), span, slice);
+                var part: SlicePart;
+                if whole {
+                    part = whole_slice(view, left, f32(column - pixels.x), slice);
+                } else {
+                    let span = textureLoad(spans, pixel, 0).xy;
+                    part = slice_part(view, slice_ray(view, vec2<f32>(pixel) + 0.5), span, slice);
+                }
 #ifdef BOX
                 let weights = box_weights(part.place, id, grid.size);
 #else
