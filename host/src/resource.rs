@@ -114,7 +114,8 @@ fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     Ok(view.to_vec())
 }
 
-/// A 2D texture, an array of them or a 3D texture, with one view of the whole.
+/// A 2D texture, an array of them or a 3D texture, with one view of the whole. Clones are the same texture.
+#[derive(Clone)]
 pub struct Texture {
     /// The texture itself.
     pub raw: wgpu::Texture,

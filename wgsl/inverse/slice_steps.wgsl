@@ -136,16 +136,8 @@ fn slice_part(view: SliceView, ray: SliceRay, span: vec2<f32>, slice: u32) -> Sl
     return SlicePart(middle + view.axis * (0.5 * (sides.x + sides.y) - dot(middle, view.axis)), part * ray.metres);
 }
 
-/// What a ray has of a slice that it crosses whole within the box. `columns`: how many pixels to the right of `left` its pixel is.
-fn whole_slice(view: SliceView, left: SliceRay, columns: f32, slice: u32) -> SlicePart {
-    let origin = left.origin + columns * view.origin_right;
-    let direction = left.direction + columns * view.direction_right;
-    let speed = dot(direction, view.axis);
-    let pace = 1.0 / select(speed, 1.0, speed == 0.0);
-    let middle = (f32(slice) + 0.5) / f32(view.slices);
-    let until = (middle - dot(origin, view.axis)) * pace;
-    let metres = direction.x * view.edge_x + direction.y * view.edge_y + direction.z * view.edge_z;
-    // Behind where the ray begins there is nothing.
-    let length = select(0.0, length(metres) * abs(pace) / f32(view.slices), until > 0.0);
-    return SlicePart(origin + until * direction, length);
+/// Metres that a ray has of a slice that it crosses whole within the box.
+fn whole_slice_metres(view: SliceView, ray: SliceRay) -> f32 {
+    let speed = abs(dot(ray.direction, view.axis)) * f32(view.slices);
+    return select(ray.metres / max(speed, 1e-30), 0.0, speed == 0.0);
 }

@@ -8,6 +8,7 @@ use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use glam::UVec3;
+use std::sync::{Mutex, PoisonError};
 use wgpu::TextureFormat::{self, R32Float, Rg32Float, Rgba32Float};
 
 /// What is solved for.
@@ -132,9 +133,10 @@ pub struct Projector {
     form: ProjectorForm,
     spans: Pass,
     render: Pass,
-    /// Of emission and of albedo.
-    weigh: [Option<Pass>; 2],
+    /// Of emission, of albedo, of both in this order, or of extinction.
+    weigh: Vec<Pass>,
     collect: Pass,
+    steps: Mutex<Option<Texture>>,
     /// Bytes of weighed steps in one piece at most.
     piece: u64,
 }
@@ -165,9 +167,9 @@ impl Projector {
         let paths = solved == Solved::Extinction;
         let rgb = ("RGB", channels == Channels::Rgb);
         let boxes = ("BOX", basis == Basis::Box);
-        let weigh = |wanted: bool, albedo: bool| {
-            wanted.then(|| pass("inverse/weigh_slices", &[rgb, ("ALBEDO", albedo)])).transpose()
-        };
+        let weigh = [("EMISSION", emission), ("ALBEDO", albedo), ("PATHS", paths)];
+        let weigh = weigh.iter().filter(|(_, wanted)| *wanted);
+        let weigh = weigh.map(|(name, _)| pass("inverse/weigh_slices", &[rgb, (name, *name != "EMISSION")]));
         Ok(Self {
             form,
             spans: pass("inverse/ray_spans", &[])?,
@@ -175,8 +177,9 @@ impl Projector {
                 "inverse/render_slices",
                 &[("PATHS", paths), ("EMISSION", emission), ("ALBEDO", albedo), rgb, boxes],
             )?,
-            weigh: [weigh(emission, false)?, weigh(albedo, true)?],
+            weigh: weigh.collect::<Result<_, _>>()?,
             collect: pass("inverse/cg_backproject", &[("PATHS", paths), rgb, boxes])?,
+            steps: Mutex::new(None),
             piece: gpu.limits.max_storage_buffer_binding_size,
         })
     }
@@ -282,6 +285,18 @@ impl Projector {
         Ok(self.render.dispatch_groups(encoder, &bound, "render_slices", tiles(view.size))?)
     }
 
+    /// Where the weighed steps of a view go: the same for all views of a size, so that many of them need no more memory than one.
+    fn steps(&self, gpu: &Gpu, size: [u32; 3]) -> Texture {
+        let mut kept = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*kept {
+            Some(steps) if steps.size() == size => steps.clone(),
+            _ => {
+                let steps = Texture::storage_volume(gpu, size, self.form.channels.format());
+                kept.insert(steps).clone()
+            }
+        }
+    }
+
     /// Records what a picture sends back into the volumes that are solved for, added to what is there: emission, albedo, both in
     /// this order, or extinction. `picture`: of the view's size and the projector's channels.
     ///
@@ -296,23 +311,14 @@ impl Projector {
         picture: &Texture,
         collected: &[Collected<'_>],
     ) -> Result<(), InverseError> {
-        // Without a pass that weighs steps, a step weighs its length.
-        let weighing: Vec<Option<&Pass>> = match self.form.solved {
-            Solved::Extinction => vec![None],
-            _ => self.weigh.iter().flatten().map(Some).collect(),
-        };
+        let paths = self.form.solved == Solved::Extinction;
+        // Of paths one slice stands for all.
+        let slices = if paths { 1 } else { view.slices };
         let [width, height] = view.size;
-        let row = u64::from(width) * u64::from(view.slices) * 4 * self.form.channels.numbers() as u64;
-        let together = match self.form.solved {
-            Solved::Extinction => height,
-            _ => (self.piece / row.max(1)).clamp(1, u64::from(height)) as u32,
-        };
-        let steps = match self.form.solved {
-            Solved::Extinction => [1; 3],
-            _ => [width, together, view.slices],
-        };
-        let weighed = Texture::storage_volume(gpu, steps, self.form.channels.format());
-        for (weigh, part) in weighing.into_iter().zip(collected) {
+        let row = u64::from(width) * u64::from(slices) * 4 * self.form.channels.numbers() as u64;
+        let together = (self.piece / row.max(1)).clamp(1, u64::from(height)) as u32;
+        let weighed = self.steps(gpu, [width, together, slices]);
+        for (weigh, part) in self.weigh.iter().zip(collected) {
             let size = part.grid;
             let grid = Buffer::uniform(gpu, &VoxelGrid { size: UVec3::from(size), reserved_a: 0 });
             let groups = [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]));
@@ -331,10 +337,8 @@ impl Projector {
                     ("solved", part.wanted.into()),
                     ("collected", part.sums.into()),
                 ];
-                if let Some(weigh) = weigh {
-                    let bound = weigh.bind_known(gpu, &resources)?;
-                    weigh.dispatch_groups(encoder, &bound, "weigh_slices", tiles([width, count]))?;
-                }
+                let bound = weigh.bind_known(gpu, &resources)?;
+                weigh.dispatch_groups(encoder, &bound, "weigh_slices", tiles([width, count]))?;
                 let bound = self.collect.bind_known(gpu, &resources)?;
                 self.collect.dispatch_groups(encoder, &bound, "cg_backproject", groups)?;
             }
