@@ -41,25 +41,37 @@ fn off_surface(texel: f32, point: vec3<f32>, normal: vec3<f32>, towards: vec3<f3
     return point + normal * (1.5 * texel) + towards * texel;
 }
 
+/// One of the four texels nearest to a place.
+struct NearTexel {
+    /// Column and row.
+    texel: vec2<u32>,
+    /// Share of the place, the four add up to 1.
+    weight: f32,
+}
+
+/// The texel `tap`, 0 to 3, of the four nearest to a place of a map of `size`, 0..1.
+fn near_texel(place: vec2<f32>, size: vec2<u32>, tap: u32) -> NearTexel {
+    let last = vec2<f32>(size) - 1.0;
+    let texel = clamp(place * vec2<f32>(size) - 0.5, vec2<f32>(0.0), last);
+    let low = floor(texel);
+    let part = texel - low;
+    let step = vec2<f32>(f32(tap & 1u), f32(tap >> 1u));
+    let weights = select(1.0 - part, part, step > vec2<f32>(0.5));
+    return NearTexel(vec2<u32>(min(low + step, last)), weights.x * weights.y);
+}
+
 /// What arrives at a point, of the light that `reached` the first surface or what lies before it, linear RGB, and the share of it that no
 /// surface blocks: of the four nearest texels those count whose surface does not lie in `range`, which ends at the point's
 /// height. `heights`: r32float, of the first surface along light rays; `place`: of the point, 0..1 over both; beyond the edge it is that at the edge.
 fn light_before_surfaces(
     reached: texture_2d<f32>, heights: texture_2d<f32>, place: vec2<f32>, range: vec2<f32>
 ) -> vec4<f32> {
-    let size = textureDimensions(heights);
-    let last = vec2<f32>(size) - 1.0;
-    let texel = clamp(place * vec2<f32>(size) - 0.5, vec2<f32>(0.0), last);
-    let low = floor(texel);
-    let part = texel - low;
     var sum = vec4<f32>(0.0);
     for (var tap = 0u; tap < 4u; tap++) {
-        let step = vec2<f32>(f32(tap & 1u), f32(tap >> 1u));
-        let at = vec2<u32>(min(low + step, last));
-        let weights = select(1.0 - part, part, step > vec2<f32>(0.5));
-        let surface = textureLoad(heights, at, 0).x;
+        let near = near_texel(place, textureDimensions(heights), tap);
+        let surface = textureLoad(heights, near.texel, 0).x;
         let lit = surface < range.x || surface >= range.y;
-        sum += select(0.0, weights.x * weights.y, lit) * vec4<f32>(textureLoad(reached, at, 0).rgb, 1.0);
+        sum += select(0.0, near.weight, lit) * vec4<f32>(textureLoad(reached, near.texel, 0).rgb, 1.0);
     }
     return sum;
 }
@@ -70,20 +82,13 @@ fn light_before_surfaces(
 fn light_on_surface(
     reached: texture_2d<f32>, heights: texture_2d<f32>, place: vec2<f32>, height: f32, reach: f32
 ) -> vec3<f32> {
-    let size = textureDimensions(heights);
-    let last = vec2<f32>(size) - 1.0;
-    let texel = clamp(place * vec2<f32>(size) - 0.5, vec2<f32>(0.0), last);
-    let low = floor(texel);
-    let part = texel - low;
     var sum = vec4<f32>(0.0);
     var brightest = vec3<f32>(0.0);
     for (var tap = 0u; tap < 4u; tap++) {
-        let step = vec2<f32>(f32(tap & 1u), f32(tap >> 1u));
-        let at = vec2<u32>(min(low + step, last));
-        let weights = select(1.0 - part, part, step > vec2<f32>(0.5));
-        let light = textureLoad(reached, at, 0).rgb;
-        let near = abs(textureLoad(heights, at, 0).x - height) <= reach;
-        sum += select(0.0, weights.x * weights.y, near) * vec4<f32>(light, 1.0);
+        let near = near_texel(place, textureDimensions(heights), tap);
+        let light = textureLoad(reached, near.texel, 0).rgb;
+        let own = abs(textureLoad(heights, near.texel, 0).x - height) <= reach;
+        sum += select(0.0, near.weight, own) * vec4<f32>(light, 1.0);
         brightest = max(brightest, light);
     }
     return select(brightest, sum.rgb / max(sum.a, 1e-3), sum.a >= 1e-3);

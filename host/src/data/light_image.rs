@@ -81,7 +81,7 @@ pub fn load_light_image(path: impl AsRef<std::path::Path>) -> Result<LightImage,
     let path = path.as_ref();
     let failed = |reason: String| LightImageError::File { path: path.to_owned(), reason };
     let picture = crate::formats::read_linear_picture(path).map_err(|error| failed(error.reason))?;
-    let texels = picture.pixels.iter().map(|[r, g, b, alpha]| Vec3::new(*r, *g, *b) * alpha).collect();
+    let texels = picture.darkened();
     LightImage::new(picture.size, texels).map_err(|error| failed(error.to_string()))
 }
 

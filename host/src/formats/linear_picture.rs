@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures that are read as scene-linear light: PNG, OpenEXR and Radiance.
 
+use glam::Vec3;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,13 @@ pub struct PicturePixels {
     pub size: [u32; 2],
     /// RGB, not multiplied by alpha, and alpha, which is 1 where there is none; rows from the top. What the file holds, finite or not.
     pub pixels: Vec<[f32; 4]>,
+}
+
+impl PicturePixels {
+    /// Linear RGB of a picture of light: what is transparent is dark.
+    pub fn darkened(&self) -> Vec<Vec3> {
+        self.pixels.iter().map(|[r, g, b, alpha]| Vec3::new(*r, *g, *b) * alpha).collect()
+    }
 }
 
 /// Reads a .png, whose colours are taken as sRGB, or an .exr or .hdr, whose colours are linear, as linear RGB.
