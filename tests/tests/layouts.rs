@@ -7,7 +7,7 @@ use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
     TonemapParameters, VolumeSpace,
 };
-use airlight::inverse::{PictureRows, SliceView, SolverPart, SolverScalars, SolverSums, VoxelGrid};
+use airlight::inverse::{PictureRows, RaySteps, SliceView, SolverPart, SolverScalars, SolverSums, VoxelGrid};
 use airlight::painterly::{
     Canvas, IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame,
     StrokeStyle, SurfaceLighting,
@@ -325,10 +325,11 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         edge_x: Vec3, reserved_e: u32, edge_y: Vec3, reserved_f: u32, edge_z: Vec3, reserved_g: u32,
     });
     twin!(twins: PictureRows { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: RaySteps { metres: f32, most: u32, longest: f32, reserved_a: u32 });
     twin!(twins: VoxelGrid { size: UVec3, reserved_a: u32 });
     twin!(twins: SolverPart {
         size: UVec3, first_group: u32, laplacian: f32, smallness: f32, oneness: f32, low: f32, high: f32,
-        groups: u32, reserved_a: u32, reserved_b: u32,
+        groups: u32, steepest: f32, reserved_a: u32,
     });
     twin!(twins: SolverScalars { kept: Vec4, step: Vec4, square: Vec4 });
     twin!(twins: SolverSums { groups: u32, first_picture: u32, pictures: u32, iteration: u32 });
