@@ -11,7 +11,7 @@ use airlight::Texture;
 use airlight::core::Camera;
 use airlight::inverse::{
     Basis, Channels, Fields, InverseError, Medium, Projector, ProjectorForm, Regulariser, SliceView, Solved,
-    Solver, Target, Unknown,
+    Solver, Target, Transpose, Unknown,
 };
 use airlight_tests::linear::Vec3;
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, View as Perspective};
@@ -125,8 +125,15 @@ fn solve(case: &Case, iterations: u32, random: &mut Random) -> (Vec<f32>, [f64; 
     let medium = Arc::new(Medium {
         extinction: volume(EXTINCTION, &extinction),
         scattered: volume([1; 3], &scattered),
+        index: None,
     });
-    let form = ProjectorForm { solved: case.solved, channels: Channels::One, basis: Basis::Triangle };
+    let form = ProjectorForm {
+        solved: case.solved,
+        channels: Channels::One,
+        basis: Basis::Triangle,
+        transpose: Transpose::Collect,
+        refraction: None,
+    };
     let projector = Projector::new(gpu(), shaders(), form).unwrap();
     let mut targets = Vec::new();
     for ((_, camera), (wanted, weights)) in cameras().iter().zip(wanted.iter().zip(&weights)) {
@@ -216,8 +223,15 @@ fn own_pictures_come_back() {
     let light = field(&|at| [1.0 + at.x, 0.9, 0.8 - at.y]);
     let emission = field(&|at| [0.6 * (0.5 + at.z), 0.3 * (0.5 + at.y), 0.1]);
     let albedo = field(&|at| [0.8 - 0.5 * at.x, 0.5, 0.5 + 0.6 * at.z]);
-    let medium = Arc::new(Medium { extinction: rgba(size, &extinction), scattered: rgba(size, &light) });
-    let form = ProjectorForm { solved: Solved::Both, channels: Channels::Rgb, basis: Basis::Triangle };
+    let medium =
+        Arc::new(Medium { extinction: rgba(size, &extinction), scattered: rgba(size, &light), index: None });
+    let form = ProjectorForm {
+        solved: Solved::Both,
+        channels: Channels::Rgb,
+        basis: Basis::Triangle,
+        transpose: Transpose::Collect,
+        refraction: None,
+    };
     let projector = Projector::new(gpu(), shaders(), form).unwrap();
     let textures = [rgba(size, &emission), rgba(size, &albedo)];
     let pixels = count([SIZE[0], SIZE[1], 1]);
@@ -269,8 +283,13 @@ fn numbers_that_do_not_fit_are_refused() {
     };
     let short = Unknown { start: vec![0.0; 7], ..unknown.clone() };
     for unknowns in [vec![], vec![short], vec![unknown.clone(), unknown]] {
-        let form =
-            ProjectorForm { solved: Solved::Emission, channels: Channels::One, basis: Basis::Triangle };
+        let form = ProjectorForm {
+            solved: Solved::Emission,
+            channels: Channels::One,
+            basis: Basis::Triangle,
+            transpose: Transpose::Collect,
+            refraction: None,
+        };
         let projector = Projector::new(gpu(), shaders(), form).unwrap();
         let refused = Solver::new(gpu(), shaders(), projector, Vec::new(), &unknowns);
         assert!(matches!(refused.err(), Some(InverseError::Count { .. })));

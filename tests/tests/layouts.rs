@@ -8,7 +8,7 @@ use airlight::core::{
     TonemapParameters, VolumeSpace,
 };
 use airlight::inverse::{
-    LightLayers, PictureRows, SliceView, SolverPart, SolverScalars, SolverSums, VoxelGrid,
+    LightLayers, PictureRows, RaySteps, SliceView, SolverPart, SolverScalars, SolverSums, VoxelGrid,
 };
 use airlight::painterly::{
     Canvas, IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame,
@@ -323,16 +323,16 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: SliceView {
         origin: Vec3, slices: u32, direction: Vec3, reserved_a: u32, origin_right: Vec3, width: u32,
         direction_right: Vec3, height: u32, origin_down: Vec3, reserved_b: u32, direction_down: Vec3,
-        reserved_c: u32, axis: Vec3, margin: f32, column_of: Vec4, row_of: Vec4, divisor_of: Vec4,
+        reserved_c: u32, axis: Vec3, reserved_d: u32, column_of: Vec4, row_of: Vec4, divisor_of: Vec4,
         edge_x: Vec3, reserved_e: u32, edge_y: Vec3, reserved_f: u32, edge_z: Vec3, reserved_g: u32,
     });
     twin!(twins: PictureRows { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: RaySteps { metres: f32, most: u32, longest: f32, reserved_a: u32 });
     twin!(twins: VoxelGrid { size: UVec3, reserved_a: u32 });
     twin!(twins: SolverPart {
         size: UVec3, first_group: u32, laplacian: f32, smallness: f32, oneness: f32, low: f32, high: f32,
         groups: u32, steepest: f32, reserved_a: u32,
     });
-    twin!(twins: LightLayers { world_from_unit: Mat4, layer_of: Vec4, size: UVec3, face: u32 });
     twin!(twins: SolverScalars { kept: Vec4, step: Vec4, square: Vec4 });
     twin!(twins: SolverSums { groups: u32, first_picture: u32, pictures: u32, iteration: u32 });
     twin!(twins: Sheets {

@@ -5,6 +5,26 @@
 // note: Weights are computed in 32 bits and by hand: texture units round them to 8 bits, and reading and adding up have to agree.
 // note: Positions are in unit space; voxel i lies at (i + 0.5) / size. Beyond the outermost voxels triangles keep the value of the nearest.
 
+/// A voxel and its basis function at some place.
+struct Corner {
+    /// The voxel.
+    voxel: vec3<u32>,
+    /// Its basis function there, 0..1.
+    weight: f32,
+}
+
+/// One of the eight voxels about a place, and its triangle function there; the eight weights add up to 1. `corner`: 0 to 7, a bit an axis.
+fn triangle_corner(unit: vec3<f32>, size: vec3<u32>, corner: u32) -> Corner {
+    let last = vec3<f32>(size - vec3<u32>(1u));
+    let place = clamp(unit * vec3<f32>(size) - 0.5, vec3<f32>(0.0), last);
+    let low = floor(place);
+    let part = place - low;
+    let upper = (vec3<u32>(corner, corner >> 1u, corner >> 2u) & vec3<u32>(1u)) == vec3<u32>(1u);
+    let weights = select(vec3<f32>(1.0) - part, part, upper);
+    // Upper ones that there are not have no weight.
+    return Corner(vec3<u32>(select(low, min(low + 1.0, last), upper)), weights.x * weights.y * weights.z);
+}
+
 /// Weights along the axes of the voxel at `voxel` at a place, their product is the basis function: triangles.
 fn triangle_weights(unit: vec3<f32>, voxel: vec3<u32>, size: vec3<u32>) -> vec3<f32> {
     let place = clamp(unit * vec3<f32>(size) - 0.5, vec3<f32>(0.0), vec3<f32>(size - vec3<u32>(1u)));

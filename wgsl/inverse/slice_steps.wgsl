@@ -63,6 +63,17 @@ struct PictureRows {
     reserved_b: u32,
 }
 
+/// Steps of rays. 16 bytes.
+struct RaySteps {
+    /// Length of a step of a bent ray, metres, above 0.
+    metres: f32,
+    /// Most steps of a bent ray.
+    most: u32,
+    /// No ray's way in the box is longer, metres.
+    longest: f32,
+    reserved_a: u32,
+}
+
 /// Voxels of what is solved for. 16 bytes.
 struct VoxelGrid {
     /// Along x, y and z, each from 1 up.

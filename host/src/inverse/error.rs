@@ -40,6 +40,9 @@ pub enum InverseError {
         /// What the device takes.
         limit: u64,
     },
+    /// Rays that are to be bent, and a medium that has no index.
+    #[error("bent rays need an index of refraction and the medium has none: give its `index`")]
+    Index,
     /// A pass cannot be made or run.
     #[error(transparent)]
     Pass(#[from] PassError),

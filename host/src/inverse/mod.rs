@@ -16,7 +16,7 @@ pub use error::InverseError;
 pub use light::{LightLayers, LightMaps, LightPasses, ShadowCasters};
 pub use problem::{Regulariser, Target, Unknown};
 pub use projector::{
-    Basis, Channels, Collected, Fields, Medium, Projector, ProjectorForm, Solved, ViewImages,
+    Basis, Channels, Collected, Fields, Medium, Projector, ProjectorForm, Solved, Transpose, ViewImages,
 };
 pub use solver::{Solver, SolverPart, SolverScalars, SolverSums};
-pub use view::{PictureRows, SliceView, VoxelGrid};
+pub use view::{PictureRows, RaySteps, SliceView, VoxelGrid};

@@ -1,119 +1,29 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Renders what is solved for, and projects pictures back.
 
-use super::{InverseError, PictureRows, SliceView, VoxelGrid};
+mod collect;
+mod forms;
+mod scatter;
+
+pub use forms::{Basis, Channels, Collected, Fields, Medium, ProjectorForm, Solved, Transpose};
+
+use super::{InverseError, RaySteps, SliceView};
 use crate::gpu::Gpu;
+use crate::out_of_range::in_range;
 use crate::pass::{Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
-use glam::UVec3;
-use std::sync::{Mutex, PoisonError};
-use wgpu::TextureFormat::{self, R32Float, Rg32Float, Rgba32Float};
-
-/// What is solved for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Solved {
-    /// Emission: radiance of a medium so thick that nothing shines through.
-    Emission,
-    /// Albedo, 0..1.
-    Albedo,
-    /// Emission and albedo.
-    Both,
-    /// Extinction, 1/m, from optical depths.
-    Extinction,
-}
-
-/// How many channels pictures and volumes have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Channels {
-    /// One.
-    One,
-    /// Linear RGB, each by itself; texels have a fourth that is not used.
-    Rgb,
-}
-
-impl Channels {
-    /// Numbers a voxel or a pixel in textures and buffers.
-    pub fn numbers(self) -> usize {
-        match self {
-            Self::One => 1,
-            Self::Rgb => 4,
-        }
-    }
-
-    /// Numbers of them that mean something.
-    pub(super) fn used(self) -> usize {
-        match self {
-            Self::One => 1,
-            Self::Rgb => 3,
-        }
-    }
-
-    /// Of textures.
-    pub(super) fn format(self) -> TextureFormat {
-        match self {
-            Self::One => R32Float,
-            Self::Rgb => Rgba32Float,
-        }
-    }
-}
-
-/// Basis functions of what is solved for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Basis {
-    /// Straight between the middles of voxels.
-    Triangle,
-    /// Constant in each voxel.
-    Box,
-}
-
-/// What a projector does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ProjectorForm {
-    /// What is solved for.
-    pub solved: Solved,
-    /// Of pictures and volumes.
-    pub channels: Channels,
-    /// Of what is solved for.
-    pub basis: Basis,
-}
-
-/// What is known of the medium, as one view sees it.
-pub struct Medium {
-    /// 1/m; 3D, of the projector's channels.
-    pub extinction: Texture,
-    /// Radiance that an albedo of 1 scatters towards the eye, likewise; black where light does not matter.
-    pub scattered: Texture,
-}
-
-/// Volumes that are rendered; those that are not solved for may be any.
-#[derive(Clone, Copy)]
-pub struct Fields<'a> {
-    /// Radiance.
-    pub emission: &'a Texture,
-    /// 0..1.
-    pub albedo: &'a Texture,
-    /// 1/m.
-    pub extinction: &'a Texture,
-}
-
-/// What is collected from pictures, of one volume that is solved for.
-#[derive(Clone, Copy)]
-pub struct Collected<'a> {
-    /// Voxels along x, y and z.
-    pub grid: [u32; 3],
-    /// A number a voxel, 0 where it is not solved for, x fastest.
-    pub wanted: &'a Buffer,
-    /// Numbers of the projector's channels a voxel, to which is added.
-    pub sums: &'a Buffer,
-}
+use collect::Collector;
+use scatter::Scatterer;
+use wgpu::TextureFormat::{self, R32Float, Rg32Float};
 
 /// Pictures of one view.
 pub struct ViewImages {
     view: Buffer,
     size: [u32; 2],
     slices: u32,
+    steps: Buffer,
     spans: Texture,
     /// `W a`: radiance, or optical depth.
     pub rendered: Texture,
@@ -133,18 +43,25 @@ pub struct Projector {
     form: ProjectorForm,
     spans: Pass,
     render: Pass,
-    /// Of emission, of albedo, of both in this order, or of extinction.
-    weigh: Vec<Pass>,
-    collect: Pass,
-    steps: Mutex<Option<Texture>>,
-    /// Bytes of weighed steps in one piece at most.
-    piece: u64,
+    back: Back,
+}
+
+/// The transpose.
+enum Back {
+    Collect(Collector),
+    Scatter(Scatterer),
 }
 
 /// Threads of a group along the axes of a picture.
 pub(super) const TILE: [u32; 2] = [16, 8];
 /// Threads of a group along the axes of a volume.
 pub(super) const BRICK: [u32; 3] = [8, 4, 4];
+
+fn compute(gpu: &Gpu, shaders: &Shaders, name: &str, flags: &[(&str, bool)]) -> Result<Pass, InverseError> {
+    let flags = flags.iter().filter(|(_, set)| *set);
+    let definitions = flags.fold(Definitions::new(), |all, (flag, _)| all.flag(*flag));
+    Ok(Pass::compute_with(gpu, shaders, name, &definitions)?)
+}
 
 pub(super) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(TILE[0]), height.div_ceil(TILE[1]), 1]
@@ -154,33 +71,31 @@ impl Projector {
     /// Builds all passes.
     ///
     /// # Errors
-    /// [`InverseError::Pass`].
+    /// [`InverseError::Setting`] for a step of bent rays that is not above 0, [`InverseError::Pass`].
     pub fn new(gpu: &Gpu, shaders: &Shaders, form: ProjectorForm) -> Result<Self, InverseError> {
-        let ProjectorForm { solved, channels, basis } = form;
-        let pass = |name: &str, flags: &[(&str, bool)]| {
-            let flags = flags.iter().filter(|(_, set)| *set);
-            let definitions = flags.fold(Definitions::new(), |all, (flag, _)| all.flag(*flag));
-            Pass::compute_with(gpu, shaders, name, &definitions)
+        if let Some(step) = form.refraction {
+            in_range("step of bent rays", step, f32::MIN_POSITIVE..=f32::MAX, "above 0 metres and finite")?;
+        }
+        let [emission, albedo] = form.radiance();
+        let flags = [
+            ("PATHS", form.solved == Solved::Extinction),
+            ("EMISSION", emission),
+            ("ALBEDO", albedo),
+            ("RGB", form.channels == Channels::Rgb),
+            ("BOX", form.basis == Basis::Box),
+            ("BENT", form.refraction.is_some()),
+        ];
+        let back = match form.transpose {
+            Transpose::Collect if form.refraction.is_none() => {
+                Back::Collect(Collector::new(gpu, shaders, form)?)
+            }
+            _ => Back::Scatter(Scatterer::new(gpu, shaders, form)?),
         };
-        let [emission, albedo] =
-            [Solved::Emission, Solved::Albedo].map(|own| solved == own || solved == Solved::Both);
-        let paths = solved == Solved::Extinction;
-        let rgb = ("RGB", channels == Channels::Rgb);
-        let boxes = ("BOX", basis == Basis::Box);
-        let weigh = [("EMISSION", emission), ("ALBEDO", albedo), ("PATHS", paths)];
-        let weigh = weigh.iter().filter(|(_, wanted)| *wanted);
-        let weigh = weigh.map(|(name, _)| pass("inverse/weigh_slices", &[rgb, (name, *name != "EMISSION")]));
         Ok(Self {
             form,
-            spans: pass("inverse/ray_spans", &[])?,
-            render: pass(
-                "inverse/render_slices",
-                &[("PATHS", paths), ("EMISSION", emission), ("ALBEDO", albedo), rgb, boxes],
-            )?,
-            weigh: weigh.collect::<Result<_, _>>()?,
-            collect: pass("inverse/cg_backproject", &[("PATHS", paths), rgb, boxes])?,
-            steps: Mutex::new(None),
-            piece: gpu.limits.max_storage_buffer_binding_size,
+            spans: compute(gpu, shaders, "inverse/ray_spans", &flags[5..])?,
+            render: compute(gpu, shaders, "inverse/render_slices", &flags)?,
+            back,
         })
     }
 
@@ -208,10 +123,10 @@ impl Projector {
     }
 
     /// Pictures of a view. `depths`: metres along each view ray to the first surface, row after row; none where there are no
-    /// surfaces.
+    /// surfaces. Of bent rays metres count along the bend.
     ///
     /// # Errors
-    /// [`InverseError`].
+    /// [`InverseError::Setting`] for steps of bent rays so short that rays may need more than 65536, [`InverseError`].
     pub fn view(
         &self,
         gpu: &Gpu,
@@ -235,6 +150,7 @@ impl Projector {
                 texture
             }
         };
+        let steps = Buffer::uniform(gpu, &RaySteps::of_view(view, self.form.refraction)?);
         // Rays that end at surfaces do so anywhere.
         let margin = if depths.is_some() { f32::MAX } else { view.margin };
         let uniform = Buffer::uniform(gpu, &SliceView { margin, ..*view });
@@ -251,16 +167,17 @@ impl Projector {
             view: uniform,
             size,
             slices: view.slices,
+            steps,
             spans,
             rendered: image(),
             through: image(),
         })
     }
 
-    /// Records `W a` of a view; of extinction alone nothing of the medium counts.
+    /// Records `W a` of a view; of extinction alone nothing of the medium counts but, with bent rays, its index.
     ///
     /// # Errors
-    /// [`InverseError::Pass`].
+    /// [`InverseError::Index`], [`InverseError::Pass`].
     pub fn render(
         &self,
         gpu: &Gpu,
@@ -271,9 +188,10 @@ impl Projector {
     ) -> Result<(), InverseError> {
         let extinction =
             if self.form.solved == Solved::Extinction { fields.extinction } else { &medium.extinction };
-        let resources: [(&str, Resource<'_>); 8] = [
+        let mut resources: Vec<(&str, Resource<'_>)> = vec![
             ("view", (&view.view).into()),
             ("spans", (&view.spans).into()),
+            ("steps", (&view.steps).into()),
             ("rendered", (&view.rendered).into()),
             ("through", (&view.through).into()),
             ("extinction", extinction.into()),
@@ -281,27 +199,18 @@ impl Projector {
             ("albedo", fields.albedo.into()),
             ("scattered", (&medium.scattered).into()),
         ];
+        if self.form.refraction.is_some() {
+            resources.push(("refraction", medium.index.as_ref().ok_or(InverseError::Index)?.into()));
+        }
         let bound = self.render.bind_known(gpu, &resources)?;
         Ok(self.render.dispatch_groups(encoder, &bound, "render_slices", tiles(view.size))?)
-    }
-
-    /// Where the weighed steps of a view go: the same for all views of a size, so that many of them need no more memory than one.
-    fn steps(&self, gpu: &Gpu, size: [u32; 3]) -> Texture {
-        let mut kept = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*kept {
-            Some(steps) if steps.size() == size => steps.clone(),
-            _ => {
-                let steps = Texture::storage_volume(gpu, size, self.form.channels.format());
-                kept.insert(steps).clone()
-            }
-        }
     }
 
     /// Records what a picture sends back into the volumes that are solved for, added to what is there: emission, albedo, both in
     /// this order, or extinction. `picture`: of the view's size and the projector's channels.
     ///
     /// # Errors
-    /// [`InverseError::Pass`].
+    /// [`InverseError::Memory`] where rays scatter and sums need too much, [`InverseError::Index`], [`InverseError::Pass`].
     pub fn backproject(
         &self,
         gpu: &Gpu,
@@ -311,38 +220,13 @@ impl Projector {
         picture: &Texture,
         collected: &[Collected<'_>],
     ) -> Result<(), InverseError> {
-        let paths = self.form.solved == Solved::Extinction;
-        // Of paths one slice stands for all.
-        let slices = if paths { 1 } else { view.slices };
-        let [width, height] = view.size;
-        let row = u64::from(width) * u64::from(slices) * 4 * self.form.channels.numbers() as u64;
-        let together = (self.piece / row.max(1)).clamp(1, u64::from(height)) as u32;
-        let weighed = self.steps(gpu, [width, together, slices]);
-        for (weigh, part) in self.weigh.iter().zip(collected) {
-            let size = part.grid;
-            let grid = Buffer::uniform(gpu, &VoxelGrid { size: UVec3::from(size), reserved_a: 0 });
-            let groups = [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]));
-            for first in (0..height).step_by(together as usize) {
-                let count = together.min(height - first);
-                let rows = Buffer::uniform(gpu, &PictureRows { first, count, reserved_a: 0, reserved_b: 0 });
-                let resources: [(&str, Resource<'_>); 10] = [
-                    ("view", (&view.view).into()),
-                    ("spans", (&view.spans).into()),
-                    ("rows", (&rows).into()),
-                    ("grid", (&grid).into()),
-                    ("picture", picture.into()),
-                    ("extinction", (&medium.extinction).into()),
-                    ("scattered", (&medium.scattered).into()),
-                    ("weighed", (&weighed).into()),
-                    ("solved", part.wanted.into()),
-                    ("collected", part.sums.into()),
-                ];
-                let bound = weigh.bind_known(gpu, &resources)?;
-                weigh.dispatch_groups(encoder, &bound, "weigh_slices", tiles([width, count]))?;
-                let bound = self.collect.bind_known(gpu, &resources)?;
-                self.collect.dispatch_groups(encoder, &bound, "cg_backproject", groups)?;
+        match &self.back {
+            Back::Collect(collector) => {
+                collector.backproject(gpu, encoder, (view, medium, picture), collected)
+            }
+            Back::Scatter(scatterer) => {
+                scatterer.backproject(gpu, encoder, (view, medium, picture), collected)
             }
         }
-        Ok(())
     }
 }

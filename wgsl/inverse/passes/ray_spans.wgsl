@@ -2,6 +2,7 @@
 // summary: Which part of each view ray lies in the volume before the first surface.
 // source: Klehm, "Stylized scattering", thesis, Listing 7.1.
 // note: Dispatch over the picture, once for a view. What is not finite in `depths` counts as no surface.
+// definition BENT: rays are bent in the volume: they end at the surface at the latest, and where they leave the volume is not asked.
 // binding view: the view.
 // binding depths: of the first surface along each view ray, metres from where the ray begins, r32float; great where there is none.
 // binding spans: out, from and to in lengths of the ray's direction, rg32float; to is not greater than from where a ray misses.
@@ -19,6 +20,13 @@ fn ray_spans(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let limit = finite_or(textureLoad(depths, min(id.xy, textureDimensions(depths) - 1u), 0).x, 3e38);
-    let span = ray_span(slice_ray(view, vec2<f32>(id.xy) + 0.5), limit);
+    let ray = slice_ray(view, vec2<f32>(id.xy) + 0.5);
+#ifdef BENT
+    let straight = ray_span(ray, limit);
+    let reach = min(max(limit, 0.0), 1e30) / max(ray.metres, 1e-6);
+    let span = vec2<f32>(straight.x, select(straight.y, reach, straight.y > straight.x));
+#else
+    let span = ray_span(ray, limit);
+#endif
     textureStore(spans, id.xy, vec4<f32>(span, 0.0, 0.0));
 }

@@ -9,16 +9,25 @@
 // definition ALBEDO: albedo is solved for. Without PATHS.
 // definition RGB: three channels, each by itself; else one.
 // definition BOX: what is solved for is constant in each voxel; else straight between them.
+// definition BENT: rays are bent by an index of refraction, and their steps are of one length.
 // binding view: the view.
-// binding spans: which part of each ray lies in the volume, rg32float.
+// binding spans: which part of each ray lies in the volume, rg32float; of inverse/ray_spans, with BENT if this has it.
 // binding rendered: out, radiance of the volume, with PATHS its optical depth; r32float, rgba32float with RGB.
 // binding extinction: of the medium, 1/m; with PATHS what is solved for.
 // binding emission: radiance of a medium so thick that nothing shines through; with EMISSION.
 // binding albedo: of the medium, 0..1; with ALBEDO.
 // binding scattered: radiance that an albedo of 1 scatters towards the eye; with ALBEDO.
+// binding steps: of the view's rays; with BENT.
+// binding refraction: index of refraction; with BENT.
 // binding through: out, transmittance to what lies behind, like `rendered`; without PATHS.
 
-#import airlight::inverse::slice_steps::{SliceView, slice_ray, slices_of, slice_part}
+#import airlight::inverse::slice_steps::{SliceView, slice_ray}
+#ifdef BENT
+#import airlight::inverse::slice_steps::RaySteps
+#import airlight::inverse::bent_rays::{bent_ray, bent_part, after_part, box_slopes}
+#else
+#import airlight::inverse::slice_steps::{slices_of, slice_part}
+#endif
 #import airlight::inverse::channels::{channels_of, texel_of, all_channels}
 #import airlight::inverse::basis::{box_field, triangle_field}
 
@@ -44,6 +53,10 @@
 @group(#{GROUP}) @binding(7) var through: texture_storage_2d<r32float, write>;
 #endif
 #endif
+#ifdef BENT
+@group(#{GROUP}) @binding(8) var<uniform> steps: RaySteps;
+@group(#{GROUP}) @binding(9) var refraction: texture_3d<f32>;
+#endif
 
 /// What is solved for, at a place.
 fn solved(field: texture_3d<f32>, place: vec3<f32>) -> vec4<f32> {
@@ -61,14 +74,28 @@ fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let ray = slice_ray(view, vec2<f32>(id.xy) + 0.5);
     let span = textureLoad(spans, min(id.xy, textureDimensions(spans) - 1u), 0).xy;
+#ifdef BENT
+    let slopes = box_slopes(view);
+    var bent = bent_ray(refraction, view, ray, span);
+    let slices = vec2<u32>(0u, steps.most);
+#else
     let slices = slices_of(view, ray, span);
     let climbs = dot(ray.direction, view.axis) >= 0.0;
+#endif
     var sum = all_channels(0.0);
 #ifndef PATHS
     var depth = all_channels(0.0);
 #endif
     for (var step = slices.x; step < slices.y; step++) {
+#ifdef BENT
+        let part = bent_part(slopes, bent, steps.metres);
+        if part.metres <= 0.0 {
+            break;
+        }
+        bent = after_part(refraction, slopes, bent, part, steps.metres);
+#else
         let part = slice_part(view, ray, span, select(slices.y - 1u - (step - slices.x), step, climbs));
+#endif
 #ifdef PATHS
         sum += channels_of(solved(extinction, part.place)) * part.metres;
 #else

@@ -4,7 +4,7 @@
 use super::inverse_scenes::{Scene, Size};
 use super::{Quality, Row, Work, figure, interleaved, median, ratio, time};
 use crate::command::{CommandError, progress};
-use crate::inverse::{Solved, Solver};
+use crate::inverse::{Solved, Solver, Transpose};
 use crate::{Gpu, Shaders};
 use std::time::Instant;
 
@@ -17,13 +17,16 @@ const SOLVED: [(&str, Solved); 2] = [("", Solved::Emission), ("_extinction", Sol
 
 /// Every named figure.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {
-    let bar = progress::bar(SOLVED.len() as u64 + 1, quiet);
+    let bar = progress::bar(SOLVED.len() as u64 + 2, quiet);
     let mut rows = Vec::new();
     for (name, solved) in SOLVED {
         bar.set_message(format!("rendering and projecting back{}", name.replace('_', " ")));
         rows.extend(pair(gpu, shaders, name, solved)?);
         bar.inc(1);
     }
+    bar.set_message("three forms of the transpose");
+    rows.extend(transposes(gpu, shaders)?);
+    bar.inc(1);
     bar.set_message("iterations over 4 and 8 views");
     rows.extend(views(gpu, shaders)?);
     bar.finish_and_clear();
@@ -33,7 +36,7 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
 /// Two views of 256x256 pixels projected back, over their rendering: 128^3 voxels, a step a voxel.
 fn pair(gpu: &Gpu, shaders: &Shaders, name: &str, solved: Solved) -> Result<Vec<Row>, CommandError> {
     let size = Size { voxels: 128, views: 2, pixels: 256, slices: 128 };
-    let scene = Scene::new(gpu, shaders, size, solved)?;
+    let scene = Scene::new(gpu, shaders, size, (solved, Transpose::Collect))?;
     let quality = Quality {
         metric: "mismatch of the pair, of |Wx| |y|",
         error: scene.mismatch(gpu)?,
@@ -53,6 +56,40 @@ fn pair(gpu: &Gpu, shaders: &Shaders, name: &str, solved: Solved) -> Result<Vec<
     let mut rows = vec![ratio(SYSTEM, over, &samples[1], &samples[0], "lower", Some(quality))];
     for (part, list) in ["render", "backproject"].iter().zip(samples) {
         rows.push(time(SYSTEM, format!("{part}{name}_2_views"), list));
+    }
+    Ok(rows)
+}
+
+/// The forms of the transpose side by side: two views of 160x160, 64^3 voxels, emission; and the share of voxels whose bits are not the same in
+/// a second run.
+fn transposes(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
+    let size = Size { voxels: 64, views: 2, pixels: 160, slices: 96 };
+    let forms =
+        [("collect", Transpose::Collect), ("fixed_point", Transpose::FixedPoint), ("swap", Transpose::Swap)];
+    let scenes = forms.map(|(_, transpose)| Scene::new(gpu, shaders, size, (Solved::Emission, transpose)));
+    let [collect, fixed, swap] = scenes;
+    let scenes = [collect?, fixed?, swap?];
+    let mut rows = Vec::new();
+    for ((name, _), scene) in forms.iter().zip(&scenes) {
+        let mut runs = Vec::new();
+        for _ in 0..2 {
+            rows.push(figure(SYSTEM, format!("mismatch_{name}"), scene.mismatch(gpu)?, "fraction"));
+            runs.push(scene.collected.read_floats(gpu)?);
+        }
+        rows.pop();
+        let unlike = runs[0].iter().zip(&runs[1]).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        let share = unlike as f64 / runs[0].len() as f64;
+        rows.push(figure(SYSTEM, format!("unlike_bits_{name}"), share, "fraction"));
+    }
+    let record = |scene: &Scene, encoder: &mut wgpu::CommandEncoder| {
+        let _ = scene.backproject(gpu, encoder);
+    };
+    let works: [Work<'_>; 3] =
+        [&|encoder| record(&scenes[0], encoder), &|encoder| record(&scenes[1], encoder), &|encoder| {
+            record(&scenes[2], encoder)
+        }];
+    for ((name, _), list) in forms.iter().zip(interleaved(gpu, &works, SAMPLES)?) {
+        rows.push(time(SYSTEM, format!("backproject_{name}"), list));
     }
     Ok(rows)
 }
@@ -85,7 +122,9 @@ fn views(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let mut solvers = Vec::new();
     for views in [8, 4] {
         let size = Size { voxels: 64, views, pixels: 160, slices: 96 };
-        solvers.push(Scene::new(gpu, shaders, size, Solved::Emission)?.solver(gpu, shaders)?);
+        solvers.push(
+            Scene::new(gpu, shaders, size, (Solved::Emission, Transpose::Collect))?.solver(gpu, shaders)?,
+        );
     }
     let samples = iterations(gpu, &mut solvers, SAMPLES)?;
     let mut rows = vec![ratio(SYSTEM, "iteration_cost_at_2x_views", &samples[0], &samples[1], "lower", None)];
@@ -108,7 +147,8 @@ pub fn tables(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Com
         let name = format!("table_iteration_{voxels}_{slices}_steps_{views}_views");
         bar.set_message(name.clone());
         let size = Size { voxels, views, pixels: 240, slices };
-        let mut solvers = [Scene::new(gpu, shaders, size, Solved::Emission)?.solver(gpu, shaders)?];
+        let mut solvers =
+            [Scene::new(gpu, shaders, size, (Solved::Emission, Transpose::Collect))?.solver(gpu, shaders)?];
         let samples = iterations(gpu, &mut solvers, 3)?;
         rows.extend(samples.into_iter().map(|list| time(SYSTEM, name.clone(), list)));
         bar.inc(1);
@@ -122,7 +162,7 @@ pub fn tables(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Com
 /// W, its transpose and five iterations, 128^3 voxels and 64 views: extinction, as itk-rtk solves for.
 fn many_views(gpu: &Gpu, shaders: &Shaders) -> Result<Vec<Row>, CommandError> {
     let size = Size { voxels: 128, views: 64, pixels: 256, slices: 128 };
-    let scene = Scene::new(gpu, shaders, size, Solved::Extinction)?;
+    let scene = Scene::new(gpu, shaders, size, (Solved::Extinction, Transpose::Collect))?;
     let works: [Work<'_>; 2] = [
         &|encoder| {
             let _ = scene.render(gpu, encoder);

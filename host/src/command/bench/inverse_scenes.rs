@@ -6,7 +6,7 @@ use crate::core::{Camera, DepthRange, PerspectiveView};
 use crate::data::cloud;
 use crate::inverse::{
     Basis, Channels, Collected, Fields, InverseError, Medium, Projector, ProjectorForm, Regulariser,
-    SliceView, Solved, Solver, Target, Unknown, ViewImages,
+    SliceView, Solved, Solver, Target, Transpose, Unknown, ViewImages,
 };
 use crate::{Buffer, Gpu, Shaders, Texture};
 use glam::{Mat4, Vec3};
@@ -78,8 +78,11 @@ impl Scene {
             projector.view(gpu, &view, None).map_err(CommandError::failure)
         });
         let views = images.collect::<Result<_, CommandError>>()?;
-        let medium =
-            Medium { extinction: volume(gpu, voxels, &extinction)?, scattered: volume(gpu, 1, &[1.0])? };
+        let medium = Medium {
+            extinction: volume(gpu, voxels, &extinction)?,
+            scattered: volume(gpu, 1, &[1.0])?,
+            index: None,
+        };
         let count = extinction.len();
         let picture = Texture::storage(gpu, [pixels; 2], R32Float);
         picture.write(gpu, &scattered_numbers((pixels * pixels) as usize))?;
@@ -187,7 +190,12 @@ mod tests {
         let gpu = pollster::block_on(Gpu::new()).unwrap();
         let shaders = Shaders::builtin();
         let size = Size { voxels: 16, views: 3, pixels: 24, slices: 24 };
-        for solved in [Solved::Emission, Solved::Extinction] {
+        for solved in [
+            (Solved::Emission, Transpose::Collect),
+            (Solved::Extinction, Transpose::Collect),
+            (Solved::Emission, Transpose::FixedPoint),
+            (Solved::Emission, Transpose::Swap),
+        ] {
             let scene = Scene::new(&gpu, &shaders, size, solved).unwrap();
             let mismatch = scene.mismatch(&gpu).unwrap();
             assert!(mismatch < 1e-5, "{mismatch}");
