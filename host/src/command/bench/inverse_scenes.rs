@@ -64,9 +64,10 @@ impl Scene {
         gpu: &Gpu,
         shaders: &Shaders,
         size: Size,
-        solved: Solved,
+        (solved, transpose): (Solved, Transpose),
     ) -> Result<Self, CommandError> {
-        let form = ProjectorForm { solved, channels: Channels::One, basis: Basis::Triangle };
+        let (channels, basis) = (Channels::One, Basis::Triangle);
+        let form = ProjectorForm { solved, channels, basis, transpose, refraction: None };
         let projector = Projector::new(gpu, shaders, form).map_err(CommandError::failure)?;
         let Size { voxels, views, pixels, slices } = size;
         let cloud = cloud([voxels; 3], 5);
