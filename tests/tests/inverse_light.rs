@@ -27,11 +27,11 @@ fn count(size: [u32; 3]) -> usize {
     size.iter().map(|side| *side as usize).product()
 }
 
-/// A cloud: balls of different density, deep enough to be dark behind. 1/m.
+/// A cloud: balls of different density, some of them cut by faces of the box, deep enough to be dark behind. 1/m.
 fn cloud(size: [u32; 3], random: &mut Random) -> Vec<f32> {
     let balls: Vec<(Vec3, f64, f64)> = (0..12)
         .map(|_| {
-            let middle = Vec3::from([0; 3].map(|_| random.between(0.15, 0.85)));
+            let middle = Vec3::from([0; 3].map(|_| random.between(0.0, 1.0)));
             (middle, random.between(0.12, 0.3), random.between(1.0, 5.0))
         })
         .collect();
@@ -149,7 +149,7 @@ fn light_of_many_directions_is_that_of_fine_marching() {
                 passes.scattered(gpu(), &texture, world_from_unit, SIZE, &[lighting(&light)], None).unwrap();
             let [root, worst] = errors(found.read(gpu()).unwrap().into_iter(), &expected);
             println!("{name}, {texels} texels: {:.2} % RMS, {:.2} % at worst", 100.0 * root, 100.0 * worst);
-            assert!(root < 0.003 && worst < 0.02, "{name}, {texels} texels: {root} {worst}");
+            assert!(root < 0.003 && worst < 0.015, "{name}, {texels} texels: {root} {worst}");
         }
     }
 }
@@ -189,7 +189,7 @@ fn channels_and_grids_of_other_sizes_have_their_own_light() {
         );
         let [root, worst] = errors(found.iter().skip(channel).step_by(4).copied(), &expected);
         println!("channel {channel}: {:.2} % RMS, {:.2} % at worst", 100.0 * root, 100.0 * worst);
-        assert!(root < 0.003 && worst < 0.03, "{channel}: {root} {worst}");
+        assert!(root < 0.003 && worst < 0.015, "{channel}: {root} {worst}");
     }
 }
 
@@ -272,7 +272,7 @@ fn spots_and_points_shine_from_outside_and_within() {
         let found = passes.scattered(gpu(), &texture, placed(), SIZE, &[light], None).unwrap();
         let [root, worst] = errors(found.read(gpu()).unwrap().into_iter(), &expected);
         println!("{name}: {:.2} % RMS, {:.2} % at worst", 100.0 * root, 100.0 * worst);
-        assert!(root < 0.003 && worst < 0.02, "{name}: {root} {worst}");
+        assert!(root < 0.003 && worst < 0.015, "{name}: {root} {worst}");
     }
 }
 

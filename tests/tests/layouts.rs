@@ -8,7 +8,8 @@ use airlight::core::{
     TonemapParameters, VolumeSpace,
 };
 use airlight::inverse::{
-    LightLayers, PictureRows, RaySteps, SliceView, SolverPart, SolverScalars, SolverSums, VoxelGrid,
+    LightLayers, LightNumber, PictureRows, RaySteps, SliceView, SolverPart, SolverScalars, SolverSums,
+    VoxelGrid,
 };
 use airlight::painterly::{
     Canvas, IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame,
@@ -333,6 +334,8 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         size: UVec3, first_group: u32, laplacian: f32, smallness: f32, oneness: f32, low: f32, high: f32,
         groups: u32, steepest: f32, reserved_a: u32,
     });
+    twin!(twins: LightLayers { world_from_unit: Mat4, layer_of: Vec4, size: UVec3, face: u32 });
+    twin!(twins: LightNumber { index: u32, count: u32, groups: u32, reserved_a: u32 });
     twin!(twins: SolverScalars { kept: Vec4, step: Vec4, square: Vec4 });
     twin!(twins: SolverSums { groups: u32, first_picture: u32, pictures: u32, iteration: u32 });
     twin!(twins: Sheets {

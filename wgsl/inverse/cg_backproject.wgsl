@@ -43,8 +43,11 @@ fn only_whole_slices(view: SliceView, support: Support) -> bool {
 /// Of a slice's middle plane where rays cross it, as seen from a voxel. For each pixel (x, y) the sum first + x right + y down has the two offsets
 /// across the slice from the voxel's middle, in voxels, times the third number.
 struct Crossings {
+    /// At the pixel (0, 0).
     first: vec3<f32>,
+    /// What a pixel to the right adds.
     right: vec3<f32>,
+    /// What a pixel down adds.
     down: vec3<f32>,
     /// Weight of the voxel's triangle function along the axis.
     weight: f32,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::light_layers
-// summary: A light's view of a volume in layers across its way, which hold how dense what it passes is: an opacity shadow map.
+// summary: A light's view of a volume in layers across its way, which hold optical depth: an opacity shadow map.
 // source: Kim and Neumann, "Opacity shadow maps" (2001); Klehm, "Stylized scattering", thesis, 2.4.3.
-// note: Layers hold the mean extinction from where a ray enters the box, not the optical depth: the depth bends at the faces of the box, where
-// note: values between rays that have entered and rays that have not would be wrong; the mean goes on smoothly. The depth at a point is the
-// note: mean times its own way in the box, which is known exactly, and so a medium that is even everywhere has no error at all.
+// note: Layers hold the optical depth from the first one on, as if the medium went on beyond the faces of its box with what is outermost: so it
+// note: bends nowhere, and values between rays are right also next to the faces, where some have entered and others have not. The depth
+// note: of a point is what lies between it and the place where its own ray enters the box, which is known exactly.
 // note: Layers lie across the axis of the light, so that every ray of it crosses all of them, one after the other.
 
 #import airlight::inverse::slice_steps::{SliceView, SliceRay, slice_ray, ray_span}
@@ -29,27 +29,6 @@ fn layers_along(layers: LightLayers, ray: SliceRay) -> vec2<f32> {
     return vec2<f32>(dot(layers.layer_of, vec4<f32>(ray.origin, 1.0)), max(dot(layers.layer_of.xyz, ray.direction), 1e-20));
 }
 
-/// Where a ray of the map begins to count, in lengths of its direction: where it enters the box, and of one that goes by closely where it enters
-/// a box that is two texels larger, so that points of the box that lie next to it find what they would.
-fn layers_begin(view: SliceView, ray: SliceRay, along: vec2<f32>) -> f32 {
-    let edges = vec3<f32>(length(view.edge_x), length(view.edge_y), length(view.edge_z));
-    let texel = (edges.x + edges.y + edges.z) / f32(max(min(view.width, view.height), 1u));
-    let room = 2.0 * texel / max(edges, vec3<f32>(1e-20));
-    let shrunk = vec3<f32>(1.0) + 2.0 * room;
-    let inner = ray_span(ray, 3e38);
-    let outer = ray_span(SliceRay((ray.origin + room) / shrunk, ray.direction / shrunk, ray.metres), 3e38);
-    let first = -along.x / along.y;
-    return max(first, select(select(first, outer.x, outer.y > outer.x), inner.x, inner.y > inner.x));
-}
-
-/// How far light comes through the box to a point of it, metres. `pixel`: where the light sees it, of `pixel_of`.
-fn way_to(layers: LightLayers, view: SliceView, unit: vec3<f32>, pixel: vec2<f32>) -> f32 {
-    let ray = slice_ray(view, pixel);
-    let along = layers_along(layers, ray);
-    let place = (dot(layers.layer_of, vec4<f32>(unit, 1.0)) - along.x) / along.y;
-    return max(place - ray_span(ray, 3e38).x, 0.0) * ray.metres;
-}
-
 /// Where a light sees a point of the box, pixels; of one that it does not see somewhere in the view.
 fn pixel_of(view: SliceView, unit: vec3<f32>) -> vec2<f32> {
     let point = vec4<f32>(unit, 1.0);
@@ -57,11 +36,20 @@ fn pixel_of(view: SliceView, unit: vec3<f32>) -> vec2<f32> {
     return clamp(pixel, vec2<f32>(0.0), vec2<f32>(f32(view.width), f32(view.height)));
 }
 
-/// Where a point of the box lies in the map, 0..1.
-fn place_in_layers(layers: LightLayers, view: SliceView, unit: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
-    let layer = clamp(dot(layers.layer_of, vec4<f32>(unit, 1.0)), 0.0, f32(view.slices));
-    // Layers are stored from the first side to the last, one more than there are.
-    return vec3<f32>(pixel / vec2<f32>(f32(view.width), f32(view.height)), (layer + 0.5) / (f32(view.slices) + 1.0));
+/// Layer of a point of the box, and of the place where light enters that comes to it. `pixel`: where the light sees it, of `pixel_of`.
+fn layers_to(layers: LightLayers, view: SliceView, unit: vec3<f32>, pixel: vec2<f32>) -> vec2<f32> {
+    let ray = slice_ray(view, pixel);
+    let along = layers_along(layers, ray);
+    let own = dot(layers.layer_of, vec4<f32>(unit, 1.0));
+    // Rounding may put the point itself before the face.
+    return vec2<f32>(own, min(along.x + along.y * ray_span(ray, 3e38).x, own));
+}
+
+/// Where a layer at a pixel lies in the map, 0..1.
+fn place_in_layers(view: SliceView, pixel: vec2<f32>, layer: f32) -> vec3<f32> {
+    let count = f32(view.slices);
+    // They are stored from the first side to the last, one more than there are.
+    return vec3<f32>(pixel / vec2<f32>(f32(view.width), f32(view.height)), (clamp(layer, 0.0, count) + 0.5) / (count + 1.0));
 }
 
 /// Face of a cube that a direction from its middle goes through; of an edge the first of its faces.

@@ -43,6 +43,19 @@ pub enum InverseError {
     /// Rays that are to be bent, and a medium that has no index.
     #[error("bent rays need an index of refraction and the medium has none: give its `index`")]
     Index,
+    /// Stored pictures of lights that the device does not hold in one piece.
+    #[error(
+        "the pictures of every light in one view need {bytes} bytes in one piece and the device takes {limit}: take light volumes in place of stored pictures, fewer lights or smaller views"
+    )]
+    LightColumns {
+        /// What is needed.
+        bytes: u64,
+        /// What the device takes.
+        limit: u64,
+    },
+    /// A projector that is no use for lights.
+    #[error("light is solved for with a projector that solves for albedo")]
+    LightProjector,
     /// A pass cannot be made or run.
     #[error(transparent)]
     Pass(#[from] PassError),

@@ -134,8 +134,27 @@ impl LightPasses {
         Ok(scattered)
     }
 
+    /// What each of several groups of lights makes the volume scatter, such as the lights of a disc with irradiance for a radiance
+    /// of 1 ([`crate::data::DiscLights::lights`]).
+    ///
+    /// # Errors
+    /// As [`Self::scattered`].
+    pub fn scattered_each(
+        &self,
+        gpu: &Gpu,
+        extinction: &Texture,
+        world_from_unit: Mat4,
+        size: [u32; 3],
+        groups: &[Vec<Lighting>],
+        surfaces: Option<ShadowCasters<'_>>,
+    ) -> Result<Vec<Texture>, InverseError> {
+        let scattered =
+            |lights: &Vec<Lighting>| self.scattered(gpu, extinction, world_from_unit, size, lights, surfaces);
+        groups.iter().map(scattered).collect()
+    }
+
     /// What [`Self::scattered`] does, into a texture that is there. `volumes`: extinction and scattered light.
-    pub(super) fn scatter_into(
+    fn scatter_into(
         &self,
         gpu: &Gpu,
         [extinction, scattered]: [&Texture; 2],
@@ -158,7 +177,7 @@ impl LightPasses {
         for light in lights {
             views.extend(views_of(light, world_from_unit, size, casters, maps)?);
         }
-        let means =
+        let depths =
             Texture::storage_volume(gpu, [maps.texels, maps.texels, maps.layers + 1], self.channels.format());
         let shadow_map = surfaces.map(|_| Texture::target(gpu, [maps.shadow_texels; 2], Depth32Float));
         let sums = Buffer::storage(gpu, bytes);
@@ -168,7 +187,15 @@ impl LightPasses {
             if let (Some(surfaces), Some(map)) = (surfaces, &shadow_map) {
                 surfaces.raster.record_shadow_map(gpu, &mut encoder, &light, surfaces.meshes, map)?;
             }
-            self.add_view(gpu, &mut encoder, view, [extinction, &means], &light, &sums, shadow_map.as_ref())?;
+            self.add_view(
+                gpu,
+                &mut encoder,
+                view,
+                [extinction, &depths],
+                &light,
+                &sums,
+                shadow_map.as_ref(),
+            )?;
             gpu.submit(encoder)?;
         }
         let grid = Buffer::uniform(gpu, &VoxelGrid { size: UVec3::from(size), reserved_a: 0 });
@@ -197,7 +224,7 @@ impl LightPasses {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         view: &LightView,
-        [extinction, means]: [&Texture; 2],
+        [extinction, depths]: [&Texture; 2],
         light: &Buffer,
         sums: &Buffer,
         shadow_map: Option<&Texture>,
@@ -209,7 +236,7 @@ impl LightPasses {
             ("layers", (&layers).into()),
             ("light", light.into()),
             ("extinction", extinction.into()),
-            ("means", means.into()),
+            ("depths", depths.into()),
             ("sums", sums.into()),
         ];
         if let Some(map) = shadow_map {

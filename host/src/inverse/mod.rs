@@ -7,6 +7,7 @@
 
 mod error;
 mod light;
+mod light_solver;
 mod problem;
 mod projector;
 mod solver;
@@ -14,6 +15,7 @@ mod view;
 
 pub use error::InverseError;
 pub use light::{LightLayers, LightMaps, LightPasses, ShadowCasters};
+pub use light_solver::{LightNumber, LightSolver, LightStrategy, LightUnknown};
 pub use problem::{Regulariser, Target, Unknown};
 pub use projector::{
     Basis, Channels, Collected, Fields, Medium, Projector, ProjectorForm, Solved, Transpose, ViewImages,

@@ -7,21 +7,21 @@
 // binding view: of the light, as in inverse/light_depths.
 // binding layers: where they lie, and how many voxels there are.
 // binding light: the light, with the matrix of its shadow map.
-// binding means: of inverse/light_depths.
+// binding depths: of inverse/light_depths.
 // binding sums: in and out, numbers a voxel, x fastest: one; four with RGB, of which the last stays as it is.
 // binding shadow_map: depth of surfaces in the view, depth32float, forward; with SURFACES.
 // binding shadow_sampler: comparison sampler, linear, less-equal; with SURFACES.
 
 #import airlight::core::light::{Light, direction_to_light, light_falloff, shadow_position}
 #import airlight::inverse::slice_steps::SliceView
-#import airlight::inverse::light_layers::{LightLayers, way_to, pixel_of, place_in_layers, face_holds}
+#import airlight::inverse::light_layers::{LightLayers, layers_to, pixel_of, place_in_layers, face_holds}
 #import airlight::inverse::channels::{channels_of, all_channels}
 #import airlight::inverse::basis::triangle_field
 
 @group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
 @group(#{GROUP}) @binding(1) var<uniform> layers: LightLayers;
 @group(#{GROUP}) @binding(2) var<uniform> light: Light;
-@group(#{GROUP}) @binding(3) var means: texture_3d<f32>;
+@group(#{GROUP}) @binding(3) var depths: texture_3d<f32>;
 @group(#{GROUP}) @binding(4) var<storage, read_write> sums: array<f32>;
 #ifdef SURFACES
 @group(#{GROUP}) @binding(5) var shadow_map: texture_depth_2d;
@@ -42,8 +42,10 @@ fn scatter_light(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let pixel = pixel_of(view, unit);
-    let mean = channels_of(triangle_field(means, place_in_layers(layers, view, unit, pixel)));
-    let depth = max(mean * way_to(layers, view, unit, pixel), all_channels(0.0));
+    let between = layers_to(layers, view, unit, pixel);
+    let behind = channels_of(triangle_field(depths, place_in_layers(view, pixel, between.x)));
+    let before = channels_of(triangle_field(depths, place_in_layers(view, pixel, between.y)));
+    let depth = max(behind - before, all_channels(0.0));
     var share = ISOTROPIC * light_falloff(light, point);
 #ifdef SURFACES
     let shadow = shadow_position(light, vec2<f32>(1.0), point);

@@ -92,6 +92,11 @@ pub struct ProjectorForm {
 }
 
 impl ProjectorForm {
+    /// Straight rays, functions that are straight between the middles of voxels, and voxels that collect.
+    pub fn new(solved: Solved, channels: Channels) -> Self {
+        Self { solved, channels, basis: Basis::Triangle, transpose: Transpose::Collect, refraction: None }
+    }
+
     /// Whether emission and whether albedo is solved for.
     pub(super) fn radiance(&self) -> [bool; 2] {
         [Solved::Emission, Solved::Albedo].map(|own| self.solved == own || self.solved == Solved::Both)

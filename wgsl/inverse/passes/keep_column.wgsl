@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: Keeps the picture of a volume in one light: a column of the matrix T.
+// source: Klehm, "Stylized scattering", thesis, 7.4.3: T is stored.
+// note: Dispatch over the picture, after it has been rendered, for each light.
+// definition RGB: three channels, four numbers a pixel; else one.
+// binding number: which light.
+// binding rendered: the picture, r32float or rgba32float.
+// binding columns: out, numbers a pixel, row after row, one light after the other.
+
+#import airlight::inverse::light_numbers::{LightNumber, CHANNELS, NUMBERS}
+
+@group(#{GROUP}) @binding(0) var<uniform> number: LightNumber;
+@group(#{GROUP}) @binding(1) var rendered: texture_2d<f32>;
+@group(#{GROUP}) @binding(2) var<storage, read_write> columns: array<f32>;
+
+@compute @workgroup_size(16, 8)
+fn keep_column(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(rendered);
+    if any(id.xy >= size) {
+        return;
+    }
+    let pixel = (number.index * size.y + id.y) * size.x + id.x;
+    let value = textureLoad(rendered, id.xy, 0);
+    for (var channel = 0u; channel < CHANNELS; channel++) {
+        columns[min(NUMBERS * pixel + channel, arrayLength(&columns) - 1u)] = value[channel];
+    }
+}
