@@ -8,7 +8,8 @@ use encase::ShaderType;
 use encase::internal::WriteInto;
 use texels::{decode, encode};
 
-/// A buffer.
+/// A buffer. Clones are the same buffer.
+#[derive(Clone)]
 pub struct Buffer {
     /// The buffer itself.
     pub raw: wgpu::Buffer,
@@ -114,7 +115,8 @@ fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     Ok(view.to_vec())
 }
 
-/// A 2D texture, an array of them or a 3D texture, with one view of the whole.
+/// A 2D texture, an array of them or a 3D texture, with one view of the whole. Clones are the same texture.
+#[derive(Clone)]
 pub struct Texture {
     /// The texture itself.
     pub raw: wgpu::Texture,

@@ -7,7 +7,9 @@ use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
     TonemapParameters, VolumeSpace,
 };
-use airlight::inverse::{PictureRows, RaySteps, SliceView, SolverPart, SolverScalars, SolverSums, VoxelGrid};
+use airlight::inverse::{
+    LightLayers, PictureRows, RaySteps, SliceView, SolverPart, SolverScalars, SolverSums, VoxelGrid,
+};
 use airlight::painterly::{
     Canvas, IsoSurface, MOST_CLIP_PLANES, RidgeParameters, StreakParameters, StrokeCounts, StrokeFrame,
     StrokeStyle, SurfaceLighting,
@@ -321,7 +323,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: SliceView {
         origin: Vec3, slices: u32, direction: Vec3, reserved_a: u32, origin_right: Vec3, width: u32,
         direction_right: Vec3, height: u32, origin_down: Vec3, reserved_b: u32, direction_down: Vec3,
-        reserved_c: u32, axis: Vec3, reserved_d: u32, column_of: Vec4, row_of: Vec4, divisor_of: Vec4,
+        reserved_c: u32, axis: Vec3, margin: f32, column_of: Vec4, row_of: Vec4, divisor_of: Vec4,
         edge_x: Vec3, reserved_e: u32, edge_y: Vec3, reserved_f: u32, edge_z: Vec3, reserved_g: u32,
     });
     twin!(twins: PictureRows { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
@@ -331,6 +333,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         size: UVec3, first_group: u32, laplacian: f32, smallness: f32, oneness: f32, low: f32, high: f32,
         groups: u32, steepest: f32, reserved_a: u32,
     });
+    twin!(twins: LightLayers { world_from_unit: Mat4, layer_of: Vec4, size: UVec3, face: u32 });
     twin!(twins: SolverScalars { kept: Vec4, step: Vec4, square: Vec4 });
     twin!(twins: SolverSums { groups: u32, first_picture: u32, pictures: u32, iteration: u32 });
     twin!(twins: Sheets {

@@ -5,7 +5,8 @@
 // note: The listing lacks the length of a step and has the wrong sign in the exponent: a step of length d through extinction s takes up
 // note: 1 - exp(-s d). Here the steps of one ray add up to its way in the box, the last one before a surface too, so that the weights
 // note: of a ray add up to 1 - transmittance.
-// note: A sample lies in the middle of what a ray has of a slice: on the slice's middle plane, but for rays that enter or end within it.
+// note: A sample lies on its slice's middle plane: where a ray crosses it, or, of a ray that enters or ends within the slice, beside the middle of
+// note: what it has of the slice.
 // note: All positions are in unit space: the box 0..1 of the volume.
 
 /// A view of the volume: rays are affine in the pixel. 208 bytes.
@@ -33,7 +34,8 @@ struct SliceView {
     reserved_c: u32,
     /// Unit vector across slices: an axis of the box.
     axis: vec3<f32>,
-    reserved_d: u32,
+    /// How far from faces across the slices samples may lie of rays that do not cross their slice whole, of the box: anywhere from 1 on.
+    margin: f32,
     /// Homogeneous column, in pixels, of a point (x, y, z, 1).
     column_of: vec4<f32>,
     /// Homogeneous row.
@@ -91,7 +93,7 @@ struct SliceRay {
 
 /// What a ray has of a slice.
 struct SlicePart {
-    /// Its middle.
+    /// Its middle, moved to the middle plane of the slice.
     place: vec3<f32>,
     /// How long it is, metres; 0 where the ray has nothing of the slice.
     metres: f32,
@@ -141,5 +143,12 @@ fn slice_part(view: SliceView, ray: SliceRay, span: vec2<f32>, slice: u32) -> Sl
     let begin = max(span.x, select(min(crossings.x, crossings.y), select(3e38, -3e38, within), still));
     let end = min(span.y, select(max(crossings.x, crossings.y), select(-3e38, 3e38, within), still));
     let part = max(end - begin, 0.0);
-    return SlicePart(ray.origin + ray.direction * (begin + 0.5 * part), part * ray.metres);
+    let middle = ray.origin + ray.direction * (begin + 0.5 * part);
+    return SlicePart(middle + view.axis * (0.5 * (sides.x + sides.y) - dot(middle, view.axis)), part * ray.metres);
+}
+
+/// Metres that a ray has of a slice that it crosses whole within the box.
+fn whole_slice_metres(view: SliceView, ray: SliceRay) -> f32 {
+    let speed = abs(dot(ray.direction, view.axis)) * f32(view.slices);
+    return select(ray.metres / max(speed, 1e-30), 0.0, speed == 0.0);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What is impossible when a volume is solved for.
 
+use crate::core::LightError;
 use crate::gpu::GpuError;
 use crate::out_of_range::OutOfRange;
 use crate::pass::PassError;
@@ -14,6 +15,9 @@ pub enum InverseError {
     /// A view or a volume whose matrix has no inverse.
     #[error("the view has no rays: its camera's and its volume's matrices must be finite and have inverses")]
     Camera,
+    /// A light that is impossible.
+    #[error(transparent)]
+    Light(#[from] LightError),
     /// Not as many numbers as something holds.
     #[error("{name} need {needed} numbers and were given {given}")]
     Count {

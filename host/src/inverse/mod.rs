@@ -6,12 +6,14 @@
 //! storing a matrix. [`Solver`] finds the volumes whose pictures are nearest to those that are wanted.
 
 mod error;
+mod light;
 mod problem;
 mod projector;
 mod solver;
 mod view;
 
 pub use error::InverseError;
+pub use light::{LightLayers, LightMaps, LightPasses, ShadowCasters};
 pub use problem::{Regulariser, Target, Unknown};
 pub use projector::{
     Basis, Channels, Collected, Fields, Medium, Projector, ProjectorForm, Solved, Transpose, ViewImages,

@@ -151,7 +151,9 @@ impl Projector {
             }
         };
         let steps = Buffer::uniform(gpu, &RaySteps::of_view(view, self.form.refraction)?);
-        let uniform = Buffer::uniform(gpu, view);
+        // Rays that end at surfaces do so anywhere.
+        let margin = if depths.is_some() { f32::MAX } else { view.margin };
+        let uniform = Buffer::uniform(gpu, &SliceView { margin, ..*view });
         let spans = Texture::storage(gpu, size, Rg32Float);
         let bound = self.spans.bind(
             gpu,

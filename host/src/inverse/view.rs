@@ -5,7 +5,7 @@ use super::InverseError;
 use crate::core::Camera;
 use crate::out_of_range::in_range;
 use encase::ShaderType;
-use glam::{DVec3, DVec4, Mat4, UVec3, Vec3, Vec4};
+use glam::{DVec2, DVec3, DVec4, Mat4, UVec3, Vec3, Vec4};
 
 /// Most slices.
 const MOST_SLICES: u32 = 4096;
@@ -41,8 +41,8 @@ pub struct SliceView {
     pub reserved_c: u32,
     /// Unit vector across slices: an axis of the box.
     pub axis: Vec3,
-    /// Padding.
-    pub reserved_d: u32,
+    /// How far from faces across the slices samples may lie of rays that do not cross their slice whole, of the box: anywhere from 1 on.
+    pub margin: f32,
     /// Homogeneous column of a pixel of a point (x, y, z, 1).
     pub column_of: Vec4,
     /// Homogeneous row.
@@ -179,7 +179,7 @@ impl SliceView {
             direction_down: direction_down.as_vec3(),
             reserved_c: 0,
             axis: axis.as_vec3(),
-            reserved_d: 0,
+            margin: margin(origins, directions, axis, size, slices),
             column_of: ((row(0) + row(3)) * (0.5 * size.x)).as_vec4(),
             row_of: ((row(3) - row(1)) * (0.5 * size.y)).as_vec4(),
             divisor_of: row(3).as_vec4(),
@@ -193,4 +193,29 @@ impl SliceView {
         let sound = view.direction.is_finite() && view.origin.is_finite() && clip_from_unit.is_finite();
         if sound { Ok(view) } else { Err(InverseError::Camera) }
     }
+}
+
+/// [`SliceView::margin`] of rays whose origins and directions are affine in the pixel, without surfaces. A ray that enters the box by a face
+/// across the slices has less than a slice of its first one: its sample is beside the middle of that, half of what the ray strays within a
+/// slice from the face at most.
+fn margin(origins: [DVec3; 3], directions: [DVec3; 3], axis: DVec3, size: DVec2, slices: u32) -> f32 {
+    const ANYWHERE: f32 = 2.0;
+    let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), DVec2::new(0.0, size.y), size];
+    let at = |[corner, right, down]: [DVec3; 3], pixel: DVec2| corner + right * pixel.x + down * pixel.y;
+    let middle = at(directions, 0.5 * size).dot(axis);
+    let mut farthest = 0.0_f64;
+    for pixel in corners {
+        let (origin, direction) = (at(origins, pixel), at(directions, pixel));
+        let along = direction.dot(axis);
+        // Rays that run along slices, to both sides, or from within them, where the eye is.
+        let begins = origin.dot(axis);
+        let before = if along > 0.0 { begins <= 0.0 } else { begins >= 1.0 };
+        if along * middle <= 0.0 || !before {
+            return ANYWHERE;
+        }
+        let strays = direction - axis * along;
+        farthest = farthest.max(strays.abs().max_element() / (along.abs() * f64::from(slices)));
+    }
+    // Slopes are ratios of functions that are affine in the pixel: greatest in a corner. A little more, for rounding.
+    (0.51 * farthest + 1e-5) as f32
 }

@@ -18,7 +18,10 @@ mod unknown;
 pub use bounded::{bounded, kkt_violation};
 pub use grid::{Basis, Grid};
 pub use least_squares::{Dense, Normal, Problem, Regulariser, laplacian};
-pub use light::{DirectionalLight, light_columns, scattered, scattered_grid, transmittance_to};
+pub use light::{
+    DirectionalLight, LocalLight, light_columns, local_grid, scattered, scattered_grid, transmittance_to,
+    transmittance_within,
+};
 pub use matrix::{Matrix, Medium, Part, Property, Weights};
 pub use ray::{Ray, View, VolumeBox};
 pub use steps::{Sample, Slices, bent, straight};

@@ -3,7 +3,7 @@
 // source: Klehm, "Stylized scattering", thesis, 7.4.1; see the module of this name.
 // note: Dispatch over the voxels for each view and each group of its rows; `collected` adds up, from zero on. No additions race: results are
 // note: the same bits in every run.
-// definition PATHS: weights of extinction, the lengths of steps; else what inverse/weigh_slices left.
+// definition PATHS: weights of extinction, the lengths of steps.
 // definition RGB: three channels, each by itself; else one.
 // definition BOX: what is solved for is constant in each voxel; else straight between them.
 // binding view: the view.
@@ -11,14 +11,17 @@
 // binding rows: which rows of the picture.
 // binding grid: the voxels.
 // binding picture: what is projected back; with PATHS.
-// binding weighed: of inverse/weigh_slices; without PATHS.
+// binding weighed: of inverse/weigh_slices.
 // binding solved: 0 where a voxel is not solved for: it stays as it is. A number a voxel, x fastest.
 // binding collected: in and out, a number a voxel; four with RGB, of which the last stays as it is.
 
 #import airlight::inverse::slice_steps::{SliceView, PictureRows, VoxelGrid, slice_ray, slice_part}
 #import airlight::inverse::channels::{channels_of, all_channels}
 #import airlight::inverse::basis::{box_weights, triangle_weights}
-#import airlight::inverse::cg_backproject::{support_of, slices_of_support, pixels_of_slice}
+#import airlight::inverse::cg_backproject::{support_of, slices_of_support, pixels_of_slice, only_whole_slices}
+#ifndef BOX
+#import airlight::inverse::cg_backproject::{crossings_of_slice, crossing_weight, pixels_of_plane}
+#endif
 
 @group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
 @group(#{GROUP}) @binding(1) var spans: texture_2d<f32>;
@@ -26,11 +29,25 @@
 @group(#{GROUP}) @binding(3) var<uniform> grid: VoxelGrid;
 #ifdef PATHS
 @group(#{GROUP}) @binding(4) var picture: texture_2d<f32>;
-#else
-@group(#{GROUP}) @binding(5) var weighed: texture_3d<f32>;
 #endif
+@group(#{GROUP}) @binding(5) var weighed: texture_3d<f32>;
 @group(#{GROUP}) @binding(6) var<storage, read> solved: array<f32>;
 @group(#{GROUP}) @binding(7) var<storage, read_write> collected: array<f32>;
+
+/// Pixels in the rows that are projected back.
+fn in_rows(pixels: vec4<i32>) -> vec4<i32> {
+    let first = i32(rows.first);
+    return vec4<i32>(pixels.x, max(pixels.y, first), pixels.z, min(pixels.w, first + i32(rows.count) - 1));
+}
+
+/// Where `weighed` has a pixel's step in a slice.
+fn step_of(column: i32, row: i32, slice: u32) -> vec3<u32> {
+#ifdef PATHS
+    return vec3<u32>(u32(column), u32(row) - rows.first, 0u);
+#else
+    return vec3<u32>(u32(column), u32(row) - rows.first, slice);
+#endif
+}
 
 @compute @workgroup_size(8, 4, 4)
 fn cg_backproject(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -41,17 +58,33 @@ fn cg_backproject(@builtin(global_invocation_id) id: vec3<u32>) {
     if index >= arrayLength(&solved) || solved[index] == 0.0 {
         return;
     }
+    var sum = all_channels(0.0);
 #ifdef BOX
     let support = support_of(id, grid.size, 0.5);
+    let slices = slices_of_support(view, support);
 #else
     let support = support_of(id, grid.size, 1.0);
+    let all_slices = slices_of_support(view, support);
+    // Where rays cross slices whole their samples are where they cross the middle plane, which is less to work out. Loops that end at once are skipped
+    // where branches that nothing takes would not be.
+    let whole = only_whole_slices(view, support);
+    let slices = vec2<u32>(all_slices.x, select(all_slices.y, all_slices.x, whole));
+    for (var slice = slices.y; slice < select(all_slices.x, all_slices.y, whole); slice++) {
+        let crossings = crossings_of_slice(view, id, grid.size, slice);
+        let pixels = in_rows(pixels_of_plane(view, support, slice));
+        for (var row = pixels.y; row <= pixels.w; row++) {
+            for (var column = pixels.x; column <= pixels.z; column++) {
+                let weight = crossing_weight(crossings, vec2<f32>(f32(column), f32(row)));
+                let sent = channels_of(textureLoad(weighed, step_of(column, row, slice), 0));
+                // Rays that pass beside the voxel may have no step there.
+                sum += select(all_channels(0.0), weight * sent, weight > 0.0);
+            }
+        }
+    }
 #endif
-    let slices = slices_of_support(view, support);
-    let last_row = i32(rows.first + rows.count) - 1;
-    var sum = all_channels(0.0);
     for (var slice = slices.x; slice < slices.y; slice++) {
-        let pixels = pixels_of_slice(view, support, slice);
-        for (var row = max(pixels.y, i32(rows.first)); row <= min(pixels.w, last_row); row++) {
+        let pixels = in_rows(pixels_of_slice(view, support, slice));
+        for (var row = pixels.y; row <= pixels.w; row++) {
             for (var column = pixels.x; column <= pixels.z; column++) {
                 let pixel = vec2<u32>(u32(column), u32(row));
                 let span = textureLoad(spans, pixel, 0).xy;
@@ -65,7 +98,7 @@ fn cg_backproject(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef PATHS
                 sum += weight * part.metres * channels_of(textureLoad(picture, pixel, 0));
 #else
-                let sent = channels_of(textureLoad(weighed, vec3<u32>(pixel.x, pixel.y - rows.first, slice), 0));
+                let sent = channels_of(textureLoad(weighed, step_of(column, row, slice), 0));
                 sum += select(all_channels(0.0), weight * sent, part.metres > 0.0);
 #endif
             }

@@ -1,27 +1,39 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: What each step of a ray sends back into the volume: a pixel's value times the step's weight.
 // source: Klehm, "Stylized scattering", thesis, 7.4.1; see inverse/render_slices, whose weights these are.
-// note: Dispatch over some rows of the picture of a view, then inverse/cg_backproject with the same rows. For extinction no pass is needed:
-// note: a step weighs its length.
-// definition ALBEDO: weights of albedo; else of emission.
+// note: Dispatch over some rows of the picture of a view, then inverse/cg_backproject with the same rows. For extinction, where a step weighs its
+// note: length, one slice stands for all: `weighed` has what a step sends back that crosses its slice whole.
+// definition PATHS: weights of extinction, the lengths of steps.
+// definition ALBEDO: weights of albedo; without it and PATHS those of emission.
 // definition RGB: three channels, each by itself; else one.
 // binding view: the view.
-// binding spans: which part of each ray lies in the volume, rg32float.
+// binding spans: which part of each ray lies in the volume, rg32float; without PATHS.
 // binding rows: which rows of the picture.
 // binding picture: what is projected back.
-// binding extinction: of the medium, 1/m.
+// binding extinction: of the medium, 1/m; without PATHS.
 // binding scattered: radiance that an albedo of 1 scatters towards the eye; with ALBEDO.
-// binding weighed: out, columns, rows of the picture from the first on, slices; r32float, rgba32float with RGB.
+// binding weighed: out, columns, rows of the picture from the first on, slices; r32float, rgba32float with RGB. One
+// binding weighed: slice with PATHS.
 
-#import airlight::inverse::slice_steps::{SliceView, PictureRows, slice_ray, slices_of, slice_part}
-#import airlight::inverse::channels::{channels_of, texel_of, all_channels}
+#import airlight::inverse::slice_steps::{SliceView, PictureRows, slice_ray}
+#import airlight::inverse::channels::{channels_of, texel_of}
+#ifdef PATHS
+#import airlight::inverse::slice_steps::whole_slice_metres
+#else
+#import airlight::inverse::slice_steps::{slices_of, slice_part}
+#import airlight::inverse::channels::all_channels
 #import airlight::inverse::basis::triangle_field
+#endif
 
 @group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
+#ifndef PATHS
 @group(#{GROUP}) @binding(1) var spans: texture_2d<f32>;
+#endif
 @group(#{GROUP}) @binding(2) var<uniform> rows: PictureRows;
 @group(#{GROUP}) @binding(3) var picture: texture_2d<f32>;
+#ifndef PATHS
 @group(#{GROUP}) @binding(4) var extinction: texture_3d<f32>;
+#endif
 #ifdef ALBEDO
 @group(#{GROUP}) @binding(5) var scattered: texture_3d<f32>;
 #endif
@@ -38,10 +50,13 @@ fn weigh_slices(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let ray = slice_ray(view, vec2<f32>(pixel) + 0.5);
+    let value = channels_of(textureLoad(picture, min(pixel, textureDimensions(picture) - 1u), 0));
+#ifdef PATHS
+    textureStore(weighed, vec3<u32>(id.xy, 0u), texel_of(value * whole_slice_metres(view, ray)));
+#else
     let span = textureLoad(spans, min(pixel, textureDimensions(spans) - 1u), 0).xy;
     let slices = slices_of(view, ray, span);
     let climbs = dot(ray.direction, view.axis) >= 0.0;
-    let value = channels_of(textureLoad(picture, min(pixel, textureDimensions(picture) - 1u), 0));
     var depth = all_channels(0.0);
     for (var step = slices.x; step < slices.y; step++) {
         let slice = select(slices.y - 1u - (step - slices.x), step, climbs);
@@ -54,4 +69,5 @@ fn weigh_slices(@builtin(global_invocation_id) id: vec3<u32>) {
         textureStore(weighed, vec3<u32>(id.xy, slice), texel_of(value * weight));
         depth += passed;
     }
+#endif
 }

@@ -3,6 +3,8 @@
 
 pub mod baselines;
 mod choices;
+mod inverse;
+mod inverse_scenes;
 mod light_rays;
 mod media_pictures;
 mod painterly;
@@ -78,7 +80,7 @@ struct Report {
     rows: Vec<Row>,
 }
 
-const SYSTEMS: [&str; 5] = ["painterly", "scattering", "splatting", "stylize", "transmittance"];
+const SYSTEMS: [&str; 6] = ["inverse", "painterly", "scattering", "splatting", "stylize", "transmittance"];
 
 /// Runs the command.
 pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
@@ -101,6 +103,12 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         print(&more);
         rows.extend(more);
     };
+    if asked("inverse") {
+        add(inverse::rows(&gpu, &shaders, quiet)?);
+        if options.tables {
+            add(inverse::tables(&gpu, &shaders, quiet)?);
+        }
+    }
     if asked("painterly") {
         add(painterly::rows(&gpu, &shaders, quiet)?);
         if options.tables {

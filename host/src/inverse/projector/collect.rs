@@ -11,32 +11,48 @@ use crate::pass::{Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use glam::UVec3;
+use std::sync::{Mutex, PoisonError};
 
 pub(super) struct Collector {
     form: ProjectorForm,
-    /// Of emission and of albedo.
-    weigh: [Option<Pass>; 2],
+    /// Of emission, of albedo, of both in this order, or of extinction.
+    weigh: Vec<Pass>,
     collect: Pass,
+    steps: Mutex<Option<Texture>>,
     /// Bytes of weighed steps in one piece at most.
     piece: u64,
 }
 
 impl Collector {
     pub(super) fn new(gpu: &Gpu, shaders: &Shaders, form: ProjectorForm) -> Result<Self, InverseError> {
-        let paths = ("PATHS", form.solved == Solved::Extinction);
+        let paths = form.solved == Solved::Extinction;
         let rgb = ("RGB", form.channels == Channels::Rgb);
         let boxes = ("BOX", form.basis == Basis::Box);
-        let weigh = |wanted: bool, albedo: bool| {
-            let flags = [rgb, ("ALBEDO", albedo)];
-            wanted.then(|| compute(gpu, shaders, "inverse/weigh_slices", &flags)).transpose()
-        };
         let [emission, albedo] = form.radiance();
+        let weigh = [("EMISSION", emission), ("ALBEDO", albedo), ("PATHS", paths)];
+        let weigh = weigh.iter().filter(|(_, wanted)| *wanted);
+        let weigh = weigh.map(|(name, _)| {
+            compute(gpu, shaders, "inverse/weigh_slices", &[rgb, (name, *name != "EMISSION")])
+        });
         Ok(Self {
             form,
-            weigh: [weigh(emission, false)?, weigh(albedo, true)?],
-            collect: compute(gpu, shaders, "inverse/cg_backproject", &[paths, rgb, boxes])?,
+            weigh: weigh.collect::<Result<_, _>>()?,
+            collect: compute(gpu, shaders, "inverse/cg_backproject", &[("PATHS", paths), rgb, boxes])?,
+            steps: Mutex::new(None),
             piece: gpu.limits.max_storage_buffer_binding_size,
         })
+    }
+
+    /// Where the weighed steps of a view go: the same for all views of a size, so that many of them need no more memory than one.
+    fn steps(&self, gpu: &Gpu, size: [u32; 3]) -> Texture {
+        let mut kept = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*kept {
+            Some(steps) if steps.size() == size => steps.clone(),
+            _ => {
+                let steps = Texture::storage_volume(gpu, size, self.form.channels.format());
+                kept.insert(steps).clone()
+            }
+        }
     }
 
     pub(super) fn backproject(
@@ -46,23 +62,14 @@ impl Collector {
         (view, medium, picture): (&ViewImages, &Medium, &Texture),
         collected: &[Collected<'_>],
     ) -> Result<(), InverseError> {
-        // Without a pass that weighs steps, a step weighs its length.
-        let weighing: Vec<Option<&Pass>> = match self.form.solved {
-            Solved::Extinction => vec![None],
-            _ => self.weigh.iter().flatten().map(Some).collect(),
-        };
+        let paths = self.form.solved == Solved::Extinction;
+        // Of paths one slice stands for all.
+        let slices = if paths { 1 } else { view.slices };
         let [width, height] = view.size;
-        let row = u64::from(width) * u64::from(view.slices) * 4 * self.form.channels.numbers() as u64;
-        let together = match self.form.solved {
-            Solved::Extinction => height,
-            _ => (self.piece / row.max(1)).clamp(1, u64::from(height)) as u32,
-        };
-        let steps = match self.form.solved {
-            Solved::Extinction => [1; 3],
-            _ => [width, together, view.slices],
-        };
-        let weighed = Texture::storage_volume(gpu, steps, self.form.channels.format());
-        for (weigh, part) in weighing.into_iter().zip(collected) {
+        let row = u64::from(width) * u64::from(slices) * 4 * self.form.channels.numbers() as u64;
+        let together = (self.piece / row.max(1)).clamp(1, u64::from(height)) as u32;
+        let weighed = self.steps(gpu, [width, together, slices]);
+        for (weigh, part) in self.weigh.iter().zip(collected) {
             let size = part.grid;
             let grid = Buffer::uniform(gpu, &VoxelGrid { size: UVec3::from(size), reserved_a: 0 });
             let groups = [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]));
@@ -81,10 +88,8 @@ impl Collector {
                     ("solved", part.wanted.into()),
                     ("collected", part.sums.into()),
                 ];
-                if let Some(weigh) = weigh {
-                    let bound = weigh.bind_known(gpu, &resources)?;
-                    weigh.dispatch_groups(encoder, &bound, "weigh_slices", tiles([width, count]))?;
-                }
+                let bound = weigh.bind_known(gpu, &resources)?;
+                weigh.dispatch_groups(encoder, &bound, "weigh_slices", tiles([width, count]))?;
                 let bound = self.collect.bind_known(gpu, &resources)?;
                 self.collect.dispatch_groups(encoder, &bound, "cg_backproject", groups)?;
             }

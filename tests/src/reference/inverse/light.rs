@@ -29,13 +29,71 @@ pub fn transmittance_to(
     towards: Vec3,
     steps: usize,
 ) -> f64 {
-    let ray = Ray { origin: point, direction: towards, depth: f64::INFINITY };
+    transmittance_within(volume, extinction, point, towards, f64::INFINITY, steps)
+}
+
+/// The same as far as a distance, metres.
+#[must_use]
+pub fn transmittance_within(
+    volume: &VolumeBox,
+    extinction: &Grid,
+    point: Vec3,
+    towards: Vec3,
+    distance: f64,
+    steps: usize,
+) -> f64 {
+    let ray = Ray { origin: point, direction: towards, depth: distance };
     let whole = [Vec3::default(), Vec3::new(1.0, 1.0, 1.0)];
     let Some([begin, end]) = volume.clip(&ray, whole) else { return 1.0 };
     let step = (end - begin) / steps as f64;
     let at = |i: usize| volume.unit(point + towards * (begin + (i as f64 + 0.5) * step));
     let sum: f64 = (0..steps).map(|i| extinction.at(Basis::Trilinear, at(i))).sum();
     (-sum * step).exp()
+}
+
+/// A light at a point of the world.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalLight {
+    /// Metres.
+    pub position: Vec3,
+    /// Nearer than this its light does not grow, metres.
+    pub radius: f64,
+    /// Radiant intensity of one channel.
+    pub intensity: f64,
+    /// Unit vector along which a spot shines, and the cosines of the angles from it up to which it shines fully and at all.
+    pub cone: Option<(Vec3, [f64; 2])>,
+}
+
+impl LocalLight {
+    /// Irradiance at normal incidence without a medium: as in `core/light`.
+    #[must_use]
+    pub fn irradiance(&self, point: Vec3) -> f64 {
+        let way = point - self.position;
+        let fall = self.cone.map_or(1.0, |(axis, [inner, outer])| {
+            let part = ((way.normalised().dot(axis) - outer) / (inner - outer)).clamp(0.0, 1.0);
+            part * part * (3.0 - 2.0 * part)
+        });
+        self.intensity * fall / (way.dot(way) + self.radius * self.radius)
+    }
+}
+
+/// What [`scattered_grid`] says of a light at a point, without surfaces.
+#[must_use]
+pub fn local_grid(
+    volume: &VolumeBox,
+    extinction: &Grid,
+    light: &LocalLight,
+    size: [usize; 3],
+    steps: usize,
+) -> Grid {
+    let value = |index: usize| {
+        let point = volume.world(place(size, index));
+        let way = light.position - point;
+        let (towards, distance) = (way.normalised(), way.length());
+        let through = transmittance_within(volume, extinction, point, towards, distance, steps);
+        light.irradiance(point) / (4.0 * PI) * through
+    };
+    Grid { size, values: parallel::rows(size.iter().product(), value) }
 }
 
 /// Light that an albedo of 1 would scatter in every direction at a point of the world, radiance. `visible` is the share of

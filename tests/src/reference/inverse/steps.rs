@@ -5,10 +5,10 @@ use super::grid::{Basis, Grid};
 use super::ray::{Ray, View, VolumeBox};
 use crate::linear::Vec3;
 
-/// A part of a ray, as its middle stands for it.
+/// A part of a ray, as one point stands for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Its middle, coordinates of the box.
+    /// That point, coordinates of the box.
     pub unit: Vec3,
     /// Its length, metres.
     pub length: f64,
@@ -50,19 +50,21 @@ impl Slices {
     }
 }
 
-/// The parts of a straight ray, one a slice that it meets, nearest first.
+/// The parts of a straight ray, one a slice that it meets, nearest first. Each is sampled beside its middle, on the middle plane of its slice.
 #[must_use]
 pub fn straight(volume: &VolumeBox, slices: &Slices, ray: &Ray) -> Vec<Sample> {
-    let mut parts: Vec<[f64; 2]> =
-        (0..slices.count).filter_map(|slice| volume.clip(ray, slices.corners(slice))).collect();
+    let part = |slice| volume.clip(ray, slices.corners(slice)).map(|part| (slice, part));
+    let mut parts: Vec<(usize, [f64; 2])> = (0..slices.count).filter_map(part).collect();
     if volume.unit_direction(ray.direction).to_array()[slices.axis] == 0.0 {
         // A ray along the border of two slices is in both.
         parts.truncate(1);
     }
-    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let sample = |[begin, end]: [f64; 2]| {
+    parts.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]));
+    let sample = |(slice, [begin, end]): (usize, [f64; 2])| {
         let middle = ray.origin + ray.direction * (0.5 * (begin + end));
-        Sample { unit: volume.unit(middle), length: end - begin }
+        let mut unit = volume.unit(middle).to_array();
+        unit[slices.axis] = (slice as f64 + 0.5) / slices.count as f64;
+        Sample { unit: Vec3::from(unit), length: end - begin }
     };
     parts.into_iter().map(sample).collect()
 }

@@ -57,7 +57,7 @@ pub fn smoke(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         },
         shading: Shading::Scattering,
         sheets: 128,
-        light_size: 512,
+        light_size: 1280,
         view: (Vec3::new(-1.2, 1.5, 4.6), Vec3::new(0.0, 1.3, -0.8), 38.0),
         background: Some(Vec3::new(0.8, 1.0, 1.25)),
         exposure: 1.0,
