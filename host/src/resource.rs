@@ -8,7 +8,8 @@ use encase::ShaderType;
 use encase::internal::WriteInto;
 use texels::{decode, encode};
 
-/// A buffer.
+/// A buffer. Clones are the same buffer.
+#[derive(Clone)]
 pub struct Buffer {
     /// The buffer itself.
     pub raw: wgpu::Buffer,

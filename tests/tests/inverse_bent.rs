@@ -51,7 +51,7 @@ fn bent_rays_are_those_of_the_reference_and_scatter_with_the_same_weights() {
                 );
                 worst = [0, 1].map(|i| worst[i].max(found[i]));
             }
-            assert!(worst[0] < 1e-3 && worst[1] < 1e-5, "{solved:?} {basis:?} {channels:?}: {worst:?}");
+            assert!(worst[0] < 1e-4 && worst[1] < 1e-6, "{solved:?} {basis:?} {channels:?}: {worst:?}");
         }
     }
 }
@@ -214,6 +214,9 @@ fn rays_that_go_round_and_impossible_indices_end() {
     }
     // Indices that there are not.
     for value in [0.0, -3.0, f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {
+        // The same everywhere it bends nothing, whatever it is.
+        let straight: f32 = lengths(([2, 2, 2], &[value; 8]), 0.05, [2, 1], [3, 3, 3], 1e9).iter().sum();
+        assert!((straight - 1.0).abs() < 1e-5, "{value}: {straight}");
         let index = [1.0, value, 1.3, value, value, 2.0, 1.0, value];
         for row in 0..4 {
             let found = lengths(([2, 2, 2], &index), 0.05, [2, row], [3, 3, 3], 1e9);

@@ -10,7 +10,7 @@ mod gpu;
 use airlight::core::Camera;
 use airlight::data::disc_lights;
 use airlight::inverse::{
-    Basis, Channels, InverseError, LightMaps, LightPasses, LightSolver, LightStrategy, LightUnknown, Medium,
+    Channels, InverseError, LightMaps, LightPasses, LightSolver, LightStrategy, LightUnknown, Medium,
     Projector, ProjectorForm, SliceView, Solved, Target,
 };
 use airlight::{Lighting, Texture};
@@ -334,7 +334,8 @@ fn what_does_not_fit_is_refused() {
     let camera = Camera { viewport: glam::Vec2::splat(256.0), ..cameras()[0].1 };
     let refusal = |solved: Solved, volumes: Vec<Texture>, start: Vec<f32>, smallness: f32, strategy| {
         let projector = Projector::new(gpu(), shaders(), form(solved)).unwrap();
-        let medium = Arc::new(Medium { extinction: texture([2; 3]), scattered: texture([1; 3]), index: None });
+        let medium =
+            Arc::new(Medium { extinction: texture([2; 3]), scattered: texture([1; 3]), index: None });
         let view = SliceView::new(&camera, placed(), [2; 3], 4).unwrap();
         let view = projector.view(gpu(), &view, None).unwrap();
         let (wanted, weights) = (vec![0.0; 65536], vec![1.0; 65536]);

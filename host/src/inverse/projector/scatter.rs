@@ -11,6 +11,7 @@ use crate::pass::{Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use glam::UVec3;
+use std::sync::{Mutex, PoisonError};
 
 /// Bits of the greatest values: four channels of the picture, then of scattered light.
 const GREATEST_BYTES: u64 = 32;
@@ -27,6 +28,8 @@ struct PartPasses {
 pub(super) struct Scatterer {
     form: ProjectorForm,
     parts: Vec<PartPasses>,
+    /// Zeros between back-projections.
+    words: Mutex<Option<Buffer>>,
 }
 
 impl Scatterer {
@@ -54,10 +57,10 @@ impl Scatterer {
             Solved::Albedo => vec![part(true)?],
             Solved::Both => vec![part(false)?, part(true)?],
         };
-        Ok(Self { form, parts })
+        Ok(Self { form, parts, words: Mutex::new(None) })
     }
 
-    /// Zeros for the sums of the greatest of the volumes; each leaves zeros to the next.
+    /// Zeros for the sums of the greatest of the volumes. Each leaves zeros to the next, so that many views need no more memory than one.
     fn words(&self, gpu: &Gpu, collected: &[Collected<'_>]) -> Result<Buffer, InverseError> {
         let voxels = |part: &Collected<'_>| part.grid.iter().map(|side| u64::from(*side)).product();
         let most: u64 = collected.iter().map(voxels).max().unwrap_or(0);
@@ -67,7 +70,11 @@ impl Scatterer {
         if bytes > limit {
             return Err(InverseError::Memory { name: "sums of a back-projection", bytes, limit });
         }
-        Ok(Buffer::storage(gpu, bytes.max(16)))
+        let mut kept = self.words.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(match &*kept {
+            Some(words) if words.raw.size() >= bytes => words.clone(),
+            _ => kept.insert(Buffer::storage(gpu, bytes.max(16))).clone(),
+        })
     }
 
     pub(super) fn backproject(
@@ -97,6 +104,9 @@ impl Scatterer {
             if self.form.refraction.is_some() {
                 resources.push(("refraction", medium.index.as_ref().ok_or(InverseError::Index)?.into()));
             }
+            // All before any dispatch: one that is refused leaves the words alone.
+            let scatter = passes.scatter.bind_known(gpu, &resources)?;
+            let sums = passes.sums.bind_known(gpu, &resources)?;
             if let Some(pass) = &passes.greatest {
                 let bound = pass.bind_known(gpu, &resources)?;
                 pass.dispatch_groups(encoder, &bound, "greatest_picture", tiles(view.size))?;
@@ -105,10 +115,8 @@ impl Scatterer {
                     pass.dispatch_groups(encoder, &bound, "greatest_light", groups)?;
                 }
             }
-            let bound = passes.scatter.bind_known(gpu, &resources)?;
-            passes.scatter.dispatch_groups(encoder, &bound, "scatter_steps", tiles(view.size))?;
-            let bound = passes.sums.bind_known(gpu, &resources)?;
-            passes.sums.dispatch_groups(encoder, &bound, "scattered_sums", bricks(part.grid))?;
+            passes.scatter.dispatch_groups(encoder, &scatter, "scatter_steps", tiles(view.size))?;
+            passes.sums.dispatch_groups(encoder, &sums, "scattered_sums", bricks(part.grid))?;
         }
         Ok(())
     }
