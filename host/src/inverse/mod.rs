@@ -6,15 +6,25 @@
 //! storing a matrix. [`Solver`] finds the volumes whose pictures are nearest to those that are wanted.
 
 mod error;
+mod hull;
+mod log_targets;
+mod meets;
 mod problem;
 mod projector;
+mod radiance_targets;
 mod solver;
+mod touched;
 mod view;
 
 pub use error::InverseError;
+pub use hull::{Silhouette, visual_hull};
+pub use log_targets::{LogCounts, LogTargets, log_targets};
+pub use meets::meets_volume;
 pub use problem::{Regulariser, Target, Unknown};
 pub use projector::{
     Basis, Channels, Collected, Fields, Medium, Projector, ProjectorForm, Solved, ViewImages,
 };
+pub use radiance_targets::radiance_targets;
 pub use solver::{Solver, SolverPart, SolverScalars, SolverSums};
+pub use touched::touched;
 pub use view::{PictureRows, SliceView, VoxelGrid};
