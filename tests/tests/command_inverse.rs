@@ -173,7 +173,7 @@ fn flags_change_what_they_say() {
     assert_eq!(plain["stages"][0]["volumes"]["emission"]["voxels"], serde_json::json!([24, 24, 24]));
     let coarse = solve("--for emission,albedo --resolution 12 --albedo-resolution 7");
     assert_eq!([shape("emission.npy"), shape("albedo.npy")], [[12, 12, 12, 3], [7, 7, 7, 3]]);
-    assert!(share(&coarse) > share(&plain));
+    assert!(share(&coarse) < 0.1 && share(&coarse) != share(&plain));
     let one = solve("--for emission,albedo --channels one");
     assert_eq!(shape("albedo.npy"), [SIDE; 3]);
     assert!(one["channels"] == "one" && share(&one) < 0.1);
@@ -212,13 +212,13 @@ fn flags_change_what_they_say() {
     assert!(fewer["steps"] == 9 && share(&fewer) != share(&plain));
 }
 
-/// A ball of one extinction before a white wall, seen along the axes and across.
+/// A ball that is densest in its middle, before a white wall, seen along the axes and across.
 #[test]
 fn extinction_is_found_from_what_is_seen_through_it() {
     let folder = folder();
     let at = folder.path();
     volume(&at.join("box.npy"), |_| [1.0]);
-    let (radius, extinction) = (1.1_f32, [1.5_f32, 0.8, 0.3]);
+    let (radius, extinction) = (1.4_f32, [2.0_f32, 1.0, 0.4]);
     let mut text = String::new();
     for (i, eye) in [[0.0, 0.0, 9.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.01], [6.0, 0.0, 6.0], [-6.0, 0.0, 6.0]]
         .into_iter()
@@ -231,20 +231,21 @@ fn extinction_is_found_from_what_is_seen_through_it() {
         );
     }
     std::fs::write(at.join("v.toml"), text).unwrap();
-    let chord = |x: u32, y: u32| {
+    // Where extinction falls with the square of the distance, of each metre of the middle's: the integral of 1 - r^2 / R^2.
+    let path = |x: u32, y: u32| {
         let [right, down] = [(x as f32 + 0.5 - 24.0) * 0.1, (y as f32 + 0.5 - 18.0) * 0.1];
-        2.0 * (radius * radius - right * right - down * down).max(0.0).sqrt()
+        let left = (radius * radius - right * right - down * down).max(0.0);
+        4.0 / 3.0 * left.powf(1.5) / (radius * radius)
     };
-    // Of all directions the same.
+    // From all directions the same.
     let picture = |medium: [f32; 3]| {
         image::Rgb32FImage::from_fn(48, 36, |x, y| {
-            image::Rgb(
-                [0, 1, 2].map(|c| medium[c] + (1.0 - medium[c]) * (-extinction[c] * chord(x, y)).exp()),
-            )
+            let through = extinction.map(|extinction| (-extinction * path(x, y)).exp());
+            image::Rgb([0, 1, 2].map(|c| medium[c] + (1.0 - medium[c]) * through[c]))
         })
     };
     picture([0.0; 3]).save(at.join("ball.exr")).unwrap();
-    image::GrayImage::from_fn(48, 36, |x, y| image::Luma([if chord(x, y) > 0.0 { 255 } else { 0 }]))
+    image::GrayImage::from_fn(48, 36, |x, y| image::Luma([if path(x, y) > 0.0 { 255 } else { 0 }]))
         .save(at.join("mask.png"))
         .unwrap();
     let solve = |flags: &str| {
@@ -252,64 +253,58 @@ fn extinction_is_found_from_what_is_seen_through_it() {
         println!("{}", run(at, &format!("{line} {flags}")).out);
         report(&at.join("out"))
     };
-    // Means of the red, green and blue of voxels well within the ball, and of those well without.
-    let means = || {
+    // By channel, of the greatest: how far voxels are from the ball, and how much lies beyond it, in the mean.
+    let errors = || {
         let (shape, values) = read(&at.join("out/extinction.npy"));
         assert_eq!(shape, [SIDE, SIDE, SIDE, 3]);
-        let mut sums = [[0.0_f64; 4]; 2];
+        let (mut squares, mut beyond) = ([0.0_f32; 3], [0.0_f32; 3]);
         for (i, voxel) in values.chunks_exact(3).enumerate() {
             let at = |i: usize| ((2 * i + 1) as f32 / SIDE as f32 - 1.0) * 2.0;
-            let away = [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE]
-                .map(at)
-                .map(|at| at * at)
-                .iter()
-                .sum::<f32>()
-                .sqrt();
-            if (away - radius).abs() > 0.3 {
-                let sum = &mut sums[usize::from(away > radius)];
-                (0..3).for_each(|c| sum[c] += f64::from(voxel[c]));
-                sum[3] += 1.0;
+            let away: f32 = [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE].map(|i| at(i).powi(2)).iter().sum();
+            for c in 0..3 {
+                let found = voxel[c] / extinction[c];
+                squares[c] += (found - (1.0 - away / (radius * radius)).max(0.0)).powi(2);
+                beyond[c] += if away > radius * radius { found } else { 0.0 };
             }
         }
-        sums.map(|sum| [0, 1, 2].map(|c| sum[c] / sum[3]))
+        let voxels = (SIDE * SIDE * SIDE) as f32;
+        [squares.map(|sum| (sum / voxels).sqrt()), beyond.map(|sum| sum / voxels)]
     };
     let plain = solve("");
     let stage = &plain["stages"][0];
     let residuals = numbers(&stage["residuals"]);
-    assert!(residuals.len() == 11 && residuals[10] < 0.01 * residuals[0], "{residuals:?}");
+    assert!(residuals.len() == 11 && residuals[10] < 0.003 * residuals[0], "{residuals:?}");
     let psnr = of_views(stage, "psnr_after");
-    assert!(psnr.iter().all(|psnr| *psnr > 28.0), "{psnr:?}");
+    assert!(psnr.iter().all(|psnr| *psnr > 40.0), "{psnr:?}");
     let depths = &stage["views"][0]["optical_depths"];
     assert_eq!((&depths["kept"], &depths["dropped"]), (&(3 * 48 * 36).into(), &0.into()), "{depths}");
-    let [inside, outside] = means();
-    println!("inside {inside:?}, outside {outside:?}");
-    for channel in 0..3 {
-        let wanted = f64::from(extinction[channel]);
-        assert!((inside[channel] / wanted - 1.0).abs() < 0.15, "{inside:?}");
-        assert!(outside[channel] < 0.06 * wanted, "{outside:?}");
-    }
+    let [off, beyond] = errors();
+    println!("off {off:?}, beyond {beyond:?}");
+    assert!(off.iter().all(|off| *off < 0.02) && beyond.iter().all(|beyond| *beyond < 0.002));
     // Within the masks alone.
     let hull = solve("--hull");
     let solved = hull["stages"][0]["volumes"]["extinction"]["solved"].as_u64().unwrap();
-    assert!((1000..7000).contains(&solved), "{solved}");
-    let [_, emptier] = means();
-    assert!(emptier[0] < outside[0], "{emptier:?}");
+    assert!((2500..9000).contains(&solved), "{solved}");
+    let [nearer, emptier] = errors();
+    assert!(emptier[0] < 0.7 * beyond[0] && nearer[0] < off[0], "{nearer:?} {emptier:?}");
     // A medium that shines, and paint that no extinction makes.
-    let mut shining = picture([0.2, 0.0, 0.4]);
-    shining.put_pixel(0, 0, image::Rgb([1.5; 3]));
-    shining.put_pixel(1, 0, image::Rgb([-0.1; 3]));
-    shining.save(at.join("ball.exr")).unwrap();
+    let shining = [0.2, 0.0, 0.4];
+    let mut painted = picture(shining);
+    painted.put_pixel(0, 0, image::Rgb([1.5; 3]));
+    painted.put_pixel(1, 0, image::Rgb([-0.1; 3]));
+    painted.save(at.join("ball.exr")).unwrap();
     let clamped = solve("--medium-radiance 0.2,0,0.4 --most-depth 3");
     let depths = &clamped["stages"][0]["views"][3]["optical_depths"];
     assert_eq!(depths["clamped_beyond_background"], 3, "{depths}");
-    assert!(depths["clamped_beyond_medium"].as_u64().unwrap() >= 3, "{depths}");
-    // Then the same pictures by what glows in it.
-    picture([0.2, 0.0, 0.4]).save(at.join("ball.exr")).unwrap();
+    let deep = (0..48 * 36).filter(|i| extinction[0] * path(i % 48, i / 48) > 3.0).count() as u64;
+    assert!(deep > 50 && depths["clamped_beyond_medium"] == deep + 3, "{deep} {depths}");
+    // Then the same pictures by what glows and scatters in it.
+    picture(shining).save(at.join("ball.exr")).unwrap();
     let both = solve("--medium-radiance 0.2,0,0.4 --for emission,albedo --channels one");
     assert_eq!([&both["stages"][0]["for"], &both["stages"][1]["for"]], ["extinction", "emission,albedo"]);
     assert_eq!(read(&at.join("out/albedo.npy")).0, [SIDE; 3]);
     let [first, second] = [0, 1].map(|stage| of_views(&both["stages"][stage], "psnr_after"));
-    assert!(second.iter().sum::<f64>() > first.iter().sum::<f64>() - 4.0, "{first:?} {second:?}");
+    assert!(first.iter().chain(&second).all(|psnr| *psnr > 35.0), "{first:?} {second:?}");
 }
 
 /// Ctrl-C writes what there is.
@@ -319,17 +314,26 @@ fn interrupted_solves_keep_what_they_have() {
     let folder = rendered();
     let at = folder.path();
     let line = "inverse solve --volume ball.npy --extinction-scale 2 --views painted/views.toml --for emission,albedo --iterations 1024 --out out";
-    let mut child = std::process::Command::new(command::binary("airlight"))
-        .args(words(line))
-        .current_dir(at)
-        .env("XDG_RUNTIME_DIR", std::env::temp_dir())
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(std::time::Duration::from_secs(4));
-    let id = child.id().to_string();
-    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    assert!(child.wait().unwrap().success());
+    // Where nothing was done yet there is nothing to keep: again, with more time.
+    let mut ended = false;
+    for seconds in [2, 6, 18, 54] {
+        let mut child = std::process::Command::new(command::binary("airlight"))
+            .args(words(line))
+            .current_dir(at)
+            .env("XDG_RUNTIME_DIR", std::env::temp_dir())
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_secs(seconds));
+        let id = child.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+        ended = child.wait().unwrap().success();
+        if ended {
+            break;
+        }
+        assert!(!at.join("out").exists());
+    }
+    assert!(ended);
     let report = report(&at.join("out"));
     let iterations = report["stages"][0]["iterations"].as_u64().unwrap();
     println!("{iterations} iterations");
@@ -342,7 +346,7 @@ fn interrupted_solves_keep_what_they_have() {
 fn awkward_sizes_are_solved() {
     let folder = folder();
     let at = folder.path();
-    let target = "target = \"t.png\"\nbackground = \"#204060\"";
+    let target = "target = \"t.png\"\nbackground = \"#f0f0f0\"";
     std::fs::write(at.join("v.toml"), view("only", [0.0, 0.0, 9.0], target)).unwrap();
     image::RgbImage::from_pixel(SIZE[0], SIZE[1], image::Rgb([200, 100, 30])).save(at.join("t.png")).unwrap();
     for flags in [

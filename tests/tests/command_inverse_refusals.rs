@@ -38,7 +38,6 @@ fn refused(at: &Path, line: &str, code: i32, parts: &[&str]) {
 fn flags_that_cannot_be_meant_are_refused() {
     let folder = prepared();
     let at = folder.path();
-    refused(at, "", 2, &["render", "solve"]);
     refused(at, "paint", 2, &["paint"]);
     refused(at, "render --volume box.npy --out out", 2, &["--views"]);
     refused(at, "solve --volume box.npy --views v.toml --out out", 2, &["--for"]);

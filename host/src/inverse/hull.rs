@@ -81,8 +81,7 @@ impl Shadow {
             if clip.w <= 1e-12 {
                 return true;
             }
-            let pixel =
-                [(0.5 + 0.5 * clip.x / clip.w) * width, (0.5 - 0.5 * clip.y / clip.w) * height];
+            let pixel = [(0.5 + 0.5 * clip.x / clip.w) * width, (0.5 - 0.5 * clip.y / clip.w) * height];
             for axis in 0..2 {
                 low[axis] = low[axis].min(pixel[axis]);
                 high[axis] = high[axis].max(pixel[axis]);
@@ -94,7 +93,8 @@ impl Shadow {
         let first = low.map(|at| at as usize);
         let past = [0, 1].map(|axis| (high[axis] as usize + 1).min(self.size[axis]));
         let count = |column: usize, row: usize| self.counts[row * (self.size[0] + 1) + column];
-        count(past[0], past[1]) + count(first[0], first[1]) > count(first[0], past[1]) + count(past[0], first[1])
+        count(past[0], past[1]) + count(first[0], first[1])
+            > count(first[0], past[1]) + count(past[0], first[1])
     }
 }
 
@@ -109,13 +109,22 @@ mod tests {
     const SIZE: [u32; 3] = [14, 11, 12];
 
     fn placed() -> Mat4 {
-        Mat4::from_rotation_y(0.3) * Mat4::from_scale(Vec3::new(2.4, 2.2, 2.0)) * Mat4::from_translation(Vec3::splat(-0.5))
+        Mat4::from_rotation_y(0.3)
+            * Mat4::from_scale(Vec3::new(2.4, 2.2, 2.0))
+            * Mat4::from_translation(Vec3::splat(-0.5))
     }
 
     fn cameras() -> Vec<Camera> {
         let depth = DepthRange::Forward;
         let perspective = |eye: Vec3| {
-            View::from(PerspectiveView { eye, target: Vec3::ZERO, field_of_view: 40.0, near: 0.1, far: 20.0, depth })
+            View::from(PerspectiveView {
+                eye,
+                target: Vec3::ZERO,
+                field_of_view: 40.0,
+                near: 0.1,
+                far: 20.0,
+                depth,
+            })
         };
         let parallel = OrthographicView {
             eye: Vec3::new(-1.0, 4.0, 0.5),
@@ -125,7 +134,8 @@ mod tests {
             far: 20.0,
             depth,
         };
-        let views = [perspective(Vec3::new(0.4, 0.3, 5.0)), perspective(Vec3::new(5.0, 0.8, 1.0)), parallel.into()];
+        let views =
+            [perspective(Vec3::new(0.4, 0.3, 5.0)), perspective(Vec3::new(5.0, 0.8, 1.0)), parallel.into()];
         views.iter().map(|view| Camera::new(view, [60, 48]).unwrap()).collect()
     }
 
@@ -166,7 +176,8 @@ mod tests {
             let unit = Vec3::new(x, y, z) / UVec3::from(SIZE).as_vec3();
             placed().transform_point3(unit).length() > 1.2
         });
-        let (beyond, kept) = far.fold((0, 0), |(all, kept), index| (all + 1, kept + usize::from(hull[index])));
+        let (beyond, kept) =
+            far.fold((0, 0), |(all, kept), index| (all + 1, kept + usize::from(hull[index])));
         assert!(beyond > 500 && kept == 0, "{kept} of {beyond}");
         let count = hull.iter().filter(|inside| **inside).count();
         assert!((150..500).contains(&count), "{count}");

@@ -59,7 +59,9 @@ pub fn log_targets(
 ) -> Result<LogTargets, InverseError> {
     in_range("greatest optical depth", most, 0.01..=80.0, "from 0.01 to 80")?;
     let needed = picture.len();
-    for (name, given) in [("pixels of a background", background.len()), ("weights of a picture", weights.len())] {
+    for (name, given) in
+        [("pixels of a background", background.len()), ("weights of a picture", weights.len())]
+    {
         if given != needed {
             return Err(InverseError::Count { name, needed, given });
         }

@@ -47,7 +47,8 @@ mod tests {
     #[test]
     fn views_that_look_elsewhere_or_end_before_it_see_nothing() {
         let placed = Mat4::from_scale(Vec3::new(2.0, 1.0, 1.0)) * Mat4::from_translation(Vec3::splat(-0.5));
-        let view = |view: View| SliceView::new(&Camera::new(&view, [8, 6]).unwrap(), placed, [8; 3], 8).unwrap();
+        let view =
+            |view: View| SliceView::new(&Camera::new(&view, [8, 6]).unwrap(), placed, [8; 3], 8).unwrap();
         let depth = DepthRange::Reversed;
         let eye = Vec3::new(0.0, 0.0, 4.0);
         let perspective = |eye: Vec3, target: Vec3| {

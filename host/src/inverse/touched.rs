@@ -60,9 +60,8 @@ fn widened(flags: &[bool], size: [usize; 3], axis: usize, ranges: &[[usize; 2]])
     let mut found = Vec::with_capacity(inner * ranges.len() * outer);
     for block in 0..outer {
         for [first, past] in ranges {
-            let any = |place: usize| {
-                (*first..*past).any(|at| flags[(block * size[axis] + at) * inner + place])
-            };
+            let any =
+                |place: usize| (*first..*past).any(|at| flags[(block * size[axis] + at) * inner + place]);
             found.extend((0..inner).map(any));
         }
     }

@@ -25,8 +25,7 @@ pub fn between(first: &ViewDescription, second: &ViewDescription) -> Option<Came
     let view: View = match (first.view, second.view) {
         (View::Perspective(one), other) => {
             let own = one.field_of_view;
-            let field_of_view =
-                0.5 * (own + other.perspective().map_or(own, |other| other.field_of_view));
+            let field_of_view = 0.5 * (own + other.perspective().map_or(own, |other| other.field_of_view));
             PerspectiveView { eye, target, field_of_view, near, far, depth }.into()
         }
         (View::Orthographic(one), other) => {
@@ -50,7 +49,8 @@ fn upright(up: Option<Vec3>) -> Vec3 {
 /// The direction half-way between two; between opposite ones round the upright axis.
 fn half_way(from: Vec3, to: Vec3, up: Vec3) -> Vec3 {
     if from.dot(to) < -0.999 {
-        let axis = (up - up.dot(from) * from).try_normalize().unwrap_or_else(|| from.any_orthonormal_vector());
+        let axis =
+            (up - up.dot(from) * from).try_normalize().unwrap_or_else(|| from.any_orthonormal_vector());
         return Quat::from_axis_angle(axis, std::f32::consts::FRAC_PI_2) * from;
     }
     (from + to).normalize_or(from)
@@ -65,7 +65,9 @@ mod tests {
     #[test]
     fn the_camera_goes_round_what_it_looks_at() {
         let view = |name: &str, camera: &str| {
-            format!("[[view]]\nname = \"{name}\"\nsize = [40, 30]\ncamera = {{ target = [0, 0, 0], {camera} }}\n")
+            format!(
+                "[[view]]\nname = \"{name}\"\nsize = [40, 30]\ncamera = {{ target = [0, 0, 0], {camera} }}\n"
+            )
         };
         let text = [
             view("a", "eye = [0, 0, 4], field_of_view = 30"),
@@ -81,7 +83,8 @@ mod tests {
         assert_eq!(between(&views[2], &views[0]).unwrap().projection, 1);
         let camera = between(&views[0], &views[1]).unwrap();
         // Of 40 degrees.
-        let edge = camera.clip_from_world.project_point3(Vec3::new(0.0, 5.0 * 20_f32.to_radians().tan(), 0.0));
+        let edge =
+            camera.clip_from_world.project_point3(Vec3::new(0.0, 5.0 * 20_f32.to_radians().tan(), 0.0));
         assert!((edge.y - 1.0).abs() < 1e-5, "{edge}");
         assert!(between(&views[3], &views[3]).unwrap().clip_from_world.project_point3(0.1 * Vec3::X).y > 0.0);
         assert!(between(&views[3], &views[4]).is_none());

@@ -36,10 +36,4 @@ impl Cancel {
     pub fn asked(&self) -> bool {
         self.asked.load(Ordering::Relaxed)
     }
-
-    /// Asks for it, as Ctrl-C does.
-    #[cfg(test)]
-    pub fn ask(&self) {
-        self.asked.store(true, Ordering::Relaxed);
-    }
 }

@@ -14,7 +14,11 @@ use glam::Vec3;
 pub fn check_medium(flags: &MediumFlags) -> Result<(), CommandError> {
     let made = !matches!(Source::of(&flags.volume), Source::File(_));
     for (refused, flag, problem) in [
-        (!is_array(&flags.volume) && flags.voxel.is_some(), "--voxel", "it is of .npy files of --volume: leave it out"),
+        (
+            !is_array(&flags.volume) && flags.voxel.is_some(),
+            "--voxel",
+            "it is of .npy files of --volume: leave it out",
+        ),
         (
             !made && flags.voxels.is_some(),
             "--voxels",
@@ -54,7 +58,11 @@ pub fn check(flags: &SolveOptions) -> Result<(), CommandError> {
             "--medium-radiance",
             "it is of --for extinction: leave it out",
         ),
-        (!extinction && flags.most_depth.is_some(), "--most-depth", "it is of --for extinction: leave it out"),
+        (
+            !extinction && flags.most_depth.is_some(),
+            "--most-depth",
+            "it is of --for extinction: leave it out",
+        ),
         (
             flags.emission_resolution.is_some() && !flags.any(Wanted::emission),
             "--emission-resolution",

@@ -83,7 +83,9 @@ impl From<ViewsError> for CommandError {
 impl From<InverseError> for CommandError {
     fn from(error: InverseError) -> Self {
         match &error {
-            InverseError::Setting(OutOfRange { name: "number of slices", .. }) => Self::misuse("--steps", error),
+            InverseError::Setting(OutOfRange { name: "number of slices", .. }) => {
+                Self::misuse("--steps", error)
+            }
             InverseError::Setting(OutOfRange { name: "number of iterations", .. }) => {
                 Self::misuse("--iterations", error)
             }

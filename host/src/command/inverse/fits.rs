@@ -85,7 +85,9 @@ mod tests {
         assert_eq!(needs([2048, 3, 1], [200; 3], [2048, 2048]), "");
         assert!(needs([2049, 3, 1], [2; 3], [9, 9]).contains("extinction of 2049x3x1 voxels need 2049"));
         let said = needs([2; 3], [256; 3], [9, 9]);
-        assert!(said.contains("268435456 bytes") && said.contains("134217728") && said.contains("--channels one"));
+        assert!(
+            said.contains("268435456 bytes") && said.contains("134217728") && said.contains("--channels one")
+        );
         assert!(needs([2; 3], [2; 3], [9, 2049]).contains("view `front` of 9x2049"));
     }
 }

@@ -180,7 +180,9 @@ fn property(text: &str) -> Result<Property, String> {
     if [".nii", ".nii.gz", ".npy"].iter().any(|ending| name.ends_with(ending)) {
         return Ok(Property::File(path));
     }
-    Err(format!("`{text}` is neither a number, nor three R,G,B, nor a file that ends in .nii, .nii.gz or .npy"))
+    Err(format!(
+        "`{text}` is neither a number, nor three R,G,B, nor a file that ends in .nii, .nii.gz or .npy"
+    ))
 }
 
 /// `--for`.

@@ -21,7 +21,9 @@ pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
     check_medium(flags)?;
     let views = read_views(&flags.views)?;
     let mut names: Vec<PathBuf> = vec!["views.toml".into()];
-    names.extend(views.iter().flat_map(|view| ["png", "exr"].map(|end| format!("{}.{end}", view.name).into())));
+    names.extend(
+        views.iter().flat_map(|view| ["png", "exr"].map(|end| format!("{}.{end}", view.name).into())),
+    );
     check_names(flags, &views, &names)?;
     let staging = Staging::new(&flags.out, names)?;
     let bar = progress::bar(3, quiet);
@@ -39,15 +41,9 @@ pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
     let sizes: Vec<(&str, [u32; 2])> =
         seen.iter().map(|seen| (seen.name(), seen.loaded.description.size)).collect();
     Needs { channels, known: &known, unknown: &[], views: &sizes, steps: false }.check(&gpu.limits)?;
-    let studio = Studio {
-        gpu: &gpu,
-        shaders: &Shaders::builtin(),
-        channels,
-        basis: Basis::Triangle,
-        place: matter.place,
-        steps,
-        ambient: flags.ambient,
-    };
+    let shaders = Shaders::builtin();
+    let form = (channels, Basis::Triangle);
+    let studio = Studio::new((&gpu, &shaders), form, matter.place, steps, flags.ambient)?;
     let look = Look { extinction: matter.extinction, emission: matter.emission, albedo: matter.albedo };
     let shots: Vec<Shot<'_>> = seen.iter().map(Seen::shot).collect();
     let pictures = studio.pictures(&look, &shots)?;

@@ -93,7 +93,9 @@ impl StageReport {
     pub fn lines(&self) -> Vec<String> {
         let totals = self.totals();
         let share = match totals[..] {
-            [first, .., last] if first > 0.0 => format!("{:.3} % of the residual is left", 100.0 * last / first),
+            [first, .., last] if first > 0.0 => {
+                format!("{:.3} % of the residual is left", 100.0 * last / first)
+            }
             _ => "nothing was wrong".to_owned(),
         };
         let mut lines = vec![format!("{}: {share} after {} iterations", self.wanted, self.iterations)];

@@ -57,13 +57,11 @@ pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
     let gpu = pollster::block_on(Gpu::new())?;
     fits(options, &gpu, &matter, &seen)?;
     let basis = Basis::from(options.basis);
-    let ambient = reduced(flags.ambient, channels);
-    let (shaders, place) = (&Shaders::builtin(), matter.place);
-    let studio = Studio { gpu: &gpu, shaders, channels, basis, place, steps, ambient };
+    let (shaders, place) = (Shaders::builtin(), matter.place);
+    let studio = Studio::new((&gpu, &shaders), (channels, basis), place, steps, flags.ambient)?;
     let mut look = Look { extinction: matter.extinction, emission: matter.emission, albedo: matter.albedo };
     let medium = reduced(options.medium_radiance.unwrap_or(Vec3::ZERO), channels);
-    let stages =
-        Stages { studio: &studio, flags: options, seen: &seen, medium, cancel: &cancel, bar: &bar };
+    let stages = Stages { studio: &studio, flags: options, seen: &seen, medium, cancel: &cancel, bar: &bar };
     let mut done: Vec<(Wanted, StageReport)> = Vec::new();
     for wanted in options.wanted.iter().copied().take_while(|_| !cancel.asked()) {
         bar.set_message(format!("{}: preparing", wanted.name()));
@@ -147,16 +145,10 @@ fn between_name(first: &ViewDescription, second: &ViewDescription) -> String {
     format!("between_{}_{}.png", first.name, second.name)
 }
 
-fn fits(
-    options: &SolveOptions,
-    gpu: &Gpu,
-    matter: &Matter,
-    seen: &[Seen],
-) -> Result<(), SolveError> {
+fn fits(options: &SolveOptions, gpu: &Gpu, matter: &Matter, seen: &[Seen]) -> Result<(), SolveError> {
     let volume = matter.extinction.size;
     let properties = options.wanted.iter().flat_map(|wanted| Property::of(*wanted));
-    let unknown: Vec<_> =
-        properties.map(|property| property.size(options, matter.place, volume)).collect();
+    let unknown: Vec<_> = properties.map(|property| property.size(options, matter.place, volume)).collect();
     let views: Vec<_> = seen.iter().map(|seen| (seen.name(), seen.loaded.description.size)).collect();
     let needs = Needs {
         channels: options.channels.into(),
@@ -175,20 +167,21 @@ fn write_between(
     seen: &[Seen],
     staging: &Staging,
 ) -> Result<(), CommandError> {
+    let mut cameras = Vec::new();
     for pair in seen.windows(2) {
-        let [first, second] = [&pair[0], &pair[1]];
-        let [one, other] = [first, second].map(|seen| &seen.loaded.description);
-        let Some(camera) = between(one, other) else { continue };
-        let slices = studio.rays(&camera, shown)?;
-        let mean = |seen: &Seen| seen.background.iter().sum::<Vec3>() / seen.background.len().max(1) as f32;
-        let behind = vec![mean(first).midpoint(mean(second)); first.background.len()];
-        let pictures = studio.pictures(shown, &[Shot { slices: &slices, depths: None }])?;
-        let [width, height] = one.size;
-        for picture in pictures {
-            let path = staging.path(between_name(one, other));
-            write_png(path, width, height, &bytes(&picture.over(&behind)))
-                .map_err(|error| CommandError::failure(format!("--out: {error}")))?;
+        if let Some(camera) = between(&pair[0].loaded.description, &pair[1].loaded.description) {
+            cameras.push((studio.rays(&camera, shown)?, pair));
         }
+    }
+    let shots: Vec<Shot<'_>> = cameras.iter().map(|(slices, _)| Shot { slices, depths: None }).collect();
+    let mean = |seen: &Seen| seen.background.iter().sum::<Vec3>() / seen.background.len().max(1) as f32;
+    for (picture, (_, pair)) in studio.pictures(shown, &shots)?.iter().zip(&cameras) {
+        let [one, other] = [&pair[0].loaded.description, &pair[1].loaded.description];
+        let behind = vec![mean(&pair[0]).midpoint(mean(&pair[1])); picture.radiance.len()];
+        let [width, height] = one.size;
+        let path = staging.path(between_name(one, other));
+        write_png(path, width, height, &bytes(&picture.over(&behind)))
+            .map_err(|error| CommandError::failure(format!("--out: {error}")))?;
     }
     Ok(())
 }

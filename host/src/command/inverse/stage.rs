@@ -162,16 +162,18 @@ impl Stages<'_> {
             let mut look = look.clone();
             for ((property, start), values) in properties.iter().zip(&starts).zip(solutions) {
                 let found = Field { size: start.size, values: colours(values, channels) };
-                *(if *property == Property::Emission { &mut look.emission } else { &mut look.albedo }) = found;
+                *(if *property == Property::Emission { &mut look.emission } else { &mut look.albedo }) =
+                    found;
             }
             look
         };
         let counts = vec![None; seen.len()];
         let (look, residuals) = self.choose(&descent, look, with, |look| {
             let pictures = self.pictures(look)?;
-            let wrong = seen.iter().zip(&pictures).map(|(seen, picture)| {
-                squares(&picture.over(&seen.background), &seen.target, &seen.weights)
-            });
+            let wrong = seen
+                .iter()
+                .zip(&pictures)
+                .map(|(seen, picture)| squares(&picture.over(&seen.background), &seen.target, &seen.weights));
             Ok(wrong.fold([0.0; 3], |all, own| [0, 1, 2].map(|channel| all[channel] + own[channel])))
         })?;
         Ok(Left { look, residuals: only(residuals, channels), volumes, counts })
@@ -233,7 +235,8 @@ impl Stages<'_> {
             };
             let (look, own) = self.choose(&descent, look, with, |look| {
                 let pictures = self.pictures(&self.shown(Wanted::Extinction, look))?;
-                let wrong = pictures.iter().zip(rows).map(|(picture, row)| depth_squares(picture, row, channel));
+                let wrong =
+                    pictures.iter().zip(rows).map(|(picture, row)| depth_squares(picture, row, channel));
                 Ok([wrong.sum(), 0.0, 0.0])
             })?;
             residuals[channel] = own.iter().map(|row| row[0]).collect();
@@ -248,7 +251,8 @@ impl Stages<'_> {
             own.get(row).or(own.last()).copied().unwrap_or(0.0)
         };
         let residuals: Vec<_> = (0..longest).map(|row| [0, 1, 2].map(|channel| at(channel, row))).collect();
-        let look = if residuals.is_empty() { look.clone() } else { Look { extinction: found, ..look.clone() } };
+        let look =
+            if residuals.is_empty() { look.clone() } else { Look { extinction: found, ..look.clone() } };
         Ok(Left { look, residuals, volumes, counts })
     }
 

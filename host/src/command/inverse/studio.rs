@@ -115,9 +115,28 @@ pub struct Studio<'a> {
     pub steps: u32,
     /// From all around, as the channels have it.
     pub ambient: Vec3,
+    /// Renders all there is.
+    pub renderer: Projector,
 }
 
-impl Studio<'_> {
+impl<'a> Studio<'a> {
+    /// A studio. `ambient`: linear RGB radiance from all around.
+    ///
+    /// # Errors
+    /// [`InverseError::Pass`].
+    pub fn new(
+        (gpu, shaders): (&'a Gpu, &'a Shaders),
+        (channels, basis): (Channels, Basis),
+        place: Mat4,
+        steps: u32,
+        ambient: Vec3,
+    ) -> Result<Self, InverseError> {
+        let form = ProjectorForm { solved: Solved::Both, channels, basis };
+        let renderer = Projector::new(gpu, shaders, form)?;
+        let ambient = reduced(ambient, channels);
+        Ok(Self { gpu, shaders, channels, basis, place, steps, ambient, renderer })
+    }
+
     /// What is known of a volume, for passes.
     ///
     /// # Errors
@@ -152,7 +171,7 @@ impl Studio<'_> {
     /// [`InverseError`].
     pub fn pictures(&self, look: &Look, shots: &[Shot<'_>]) -> Result<Vec<Picture>, InverseError> {
         let (gpu, channels) = (self.gpu, self.channels);
-        let projector = self.projector(Solved::Both, channels)?;
+        let projector = &self.renderer;
         let medium = self.medium(look)?;
         let [emission, albedo] = [&look.emission, &look.albedo].map(|field| field.texture(gpu, channels));
         let (emission, albedo) = (emission?, albedo?);

@@ -151,7 +151,8 @@ fn placed(flag: &str, path: &PathBuf, place: Mat4) -> Result<Field, CommandError
         let own = volumes[0].world_from_unit;
         let longest = edges(place).into_iter().fold(0.0, f32::max);
         let corners = Bounds { min: Vec3::ZERO, max: Vec3::ONE }.corners();
-        let apart = corners.map(|corner| own.transform_point3(corner).distance(place.transform_point3(corner)));
+        let apart =
+            corners.map(|corner| own.transform_point3(corner).distance(place.transform_point3(corner)));
         let most = apart.into_iter().fold(0.0, f32::max);
         if most > SAME_PLACE * longest {
             return Err(CommandError::failure(format!(
