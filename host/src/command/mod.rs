@@ -59,6 +59,8 @@ enum Command {
     Painterly(Box<painterly::Options>),
     /// Volumes and meshes of yours as sheets of splats, lit from sheet to sheet.
     Splatting(Box<splatting::Options>),
+    /// Volumes that look from every side as somebody painted them.
+    Inverse(inverse::Options),
     /// Any compute or full-screen pass on arrays of yours, by binding name.
     Run(run::Options),
     /// Ratios against baselines, interleaved, with the error of both sides.
@@ -80,6 +82,7 @@ pub fn main() -> ExitCode {
         Command::Transmittance(options) => transmittance::run(&options, quiet),
         Command::Painterly(options) => painterly::run(&options, quiet),
         Command::Splatting(options) => splatting::run(&options, quiet),
+        Command::Inverse(options) => inverse::run(&options, quiet),
         Command::Run(options) => run::run(&options),
         Command::Bench(options) => bench::run(&options, quiet),
         Command::List(options) => list::list(&options),

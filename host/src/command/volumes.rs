@@ -3,7 +3,7 @@
 
 use super::CommandError;
 use super::error::medium_error;
-use crate::data::{Volume, load_volume};
+use crate::data::{Volume, load_channels, load_volume};
 use glam::{Mat4, Vec3};
 use std::path::Path;
 
@@ -20,13 +20,32 @@ pub fn is_array(path: &Path) -> bool {
 /// # Errors
 /// Misuse: an unknown name. A failure: a file that cannot be read.
 pub fn load(path: &Path, voxel: Option<f32>, known: &str) -> Result<Volume, CommandError> {
-    let volume = load_volume(path, voxel.unwrap_or(1.0));
-    let mut volume = volume.map_err(|error| medium_error("--volume", error, known))?;
-    if is_array(path) && voxel.is_none() {
+    let mut volume =
+        load_volume(path, voxel.unwrap_or(1.0)).map_err(|error| medium_error("--volume", error, known))?;
+    scale_array(path, voxel, std::slice::from_mut(&mut volume));
+    Ok(volume)
+}
+
+/// Like [`load`], of a file that holds one volume or the three channels of one.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_all(path: &Path, voxel: Option<f32>, known: &str) -> Result<Vec<Volume>, CommandError> {
+    let mut volumes =
+        load_channels(path, voxel.unwrap_or(1.0)).map_err(|error| medium_error("--volume", error, known))?;
+    scale_array(path, voxel, &mut volumes);
+    Ok(volumes)
+}
+
+/// Gives an array for whose voxels no side was said its longest side.
+fn scale_array(path: &Path, voxel: Option<f32>, volumes: &mut [Volume]) {
+    if !is_array(path) || voxel.is_some() {
+        return;
+    }
+    for volume in volumes {
         let longest = volume.bounds().size().max_element();
         volume.world_from_unit = Mat4::from_scale(Vec3::splat(LONGEST / longest)) * volume.world_from_unit;
     }
-    Ok(volume)
 }
 
 /// Voxels of a box with such sides, `count` along the longest, at least one.

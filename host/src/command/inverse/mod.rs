@@ -1,6 +1,36 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Volumes and light found from painted views: what goes in.
-#![allow(dead_code, unused_imports)]
+//! `airlight inverse`: pictures of a volume to paint on, and the volume that looks as they were painted.
 
+mod between;
+mod cancel;
+mod conflicts;
+mod descent;
+mod error;
+mod field;
+mod fits;
+mod light;
+mod options;
+#[allow(dead_code, unused_imports)]
 mod paint;
+mod parts;
+mod places;
+mod render;
+mod report;
+mod solve;
+mod stage;
+mod studio;
 mod views;
+mod volumes;
+
+pub use options::Options;
+
+use super::CommandError;
+use options::Task;
+
+/// Runs the command.
+pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
+    match &options.task {
+        Task::Render(options) => render::run(options, quiet),
+        Task::Solve(options) => solve::run(options, quiet),
+    }
+}

@@ -22,7 +22,7 @@ mod write;
 
 pub use error::ViewsError;
 pub use load::{LoadedView, load_view};
-pub use write::{WrittenView, write_views};
+pub use write::write_views;
 
 use crate::core::{Camera, DepthRange, OrthographicView, PerspectiveView, View};
 use crate::data::linear_from_hexadecimal;

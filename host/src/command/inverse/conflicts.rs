@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! What cannot be meant with `airlight inverse`, before any file is read.
+
+use super::options::{BasisSpelling, MediumFlags, Property, SolveOptions, Wanted};
+use super::volumes::Source;
+use crate::command::CommandError;
+use crate::command::volumes::is_array;
+use glam::Vec3;
+
+/// Checks what the flags of the medium say.
+///
+/// # Errors
+/// Misuse.
+pub fn check_medium(flags: &MediumFlags) -> Result<(), CommandError> {
+    let made = !matches!(Source::of(&flags.volume), Source::File(_));
+    for (refused, flag, problem) in [
+        (
+            !is_array(&flags.volume) && flags.voxel.is_some(),
+            "--voxel",
+            "it is of .npy files of --volume: leave it out",
+        ),
+        (
+            !made && flags.voxels.is_some(),
+            "--voxels",
+            "it is of --volume cloud, clouds, plume and smoke: leave it out, or give --resolution",
+        ),
+        (
+            !made && flags.seed.is_some(),
+            "--seed",
+            "files are as they are: leave it out, or take cloud, clouds, plume or smoke",
+        ),
+    ] {
+        if refused {
+            return Err(CommandError::misuse(flag, problem));
+        }
+    }
+    number("--extinction-scale", flags.extinction_scale, [0.0, 1e6])?;
+    colour("--ambient", Some(flags.ambient), 1e4)?;
+    colour("--emission", constant(&flags.emission), 1e4)?;
+    colour("--albedo", constant(&flags.albedo), 1.0)
+}
+
+/// Checks what all flags of a solve say.
+///
+/// # Errors
+/// Misuse: a value, or two flags that cannot be meant together.
+pub fn check(flags: &SolveOptions) -> Result<(), CommandError> {
+    check_medium(&flags.medium)?;
+    let extinction = flags.any(|wanted| wanted == Wanted::Extinction);
+    for (refused, flag, problem) in [
+        (
+            extinction && flags.basis == BasisSpelling::Box,
+            "--basis",
+            "extinction is read straight between its voxels: leave it out, or solve for emission and albedo alone",
+        ),
+        (
+            !extinction && flags.medium_radiance.is_some(),
+            "--medium-radiance",
+            "it is of --for extinction: leave it out",
+        ),
+        (
+            !extinction && flags.most_depth.is_some(),
+            "--most-depth",
+            "it is of --for extinction: leave it out",
+        ),
+        (
+            flags.emission_resolution.is_some() && !flags.any(Wanted::emission),
+            "--emission-resolution",
+            "emission is not solved for: leave it out, or give --for emission",
+        ),
+        (
+            flags.albedo_resolution.is_some() && !flags.any(Wanted::albedo),
+            "--albedo-resolution",
+            "albedo is not solved for: leave it out, or give --for albedo",
+        ),
+    ] {
+        if refused {
+            return Err(CommandError::misuse(flag, problem));
+        }
+    }
+    for (flag, weight) in
+        [("--laplacian", flags.laplacian), ("--smallness", flags.smallness), ("--oneness", flags.oneness)]
+    {
+        number(flag, Some(weight), [0.0, 1e6])?;
+    }
+    number("--most-depth", flags.most_depth, [0.01, 80.0])?;
+    colour("--medium-radiance", flags.medium_radiance, 1e4)
+}
+
+fn constant(of: &Property) -> Option<Vec3> {
+    match of {
+        Property::Constant(colour) => Some(*colour),
+        Property::File(_) => None,
+    }
+}
+
+fn number(flag: &str, value: Option<f32>, [least, most]: [f32; 2]) -> Result<(), CommandError> {
+    match value.filter(|value| !(least..=most).contains(value)) {
+        Some(value) => {
+            Err(CommandError::misuse(flag, format!("{value} is impossible: {least} to {most} is possible")))
+        }
+        None => Ok(()),
+    }
+}
+
+fn colour(flag: &str, colour: Option<Vec3>, most: f32) -> Result<(), CommandError> {
+    let possible = |colour: Vec3| colour.min_element() >= 0.0 && colour.max_element() <= most;
+    match colour.filter(|colour| !possible(*colour)) {
+        Some(colour) => {
+            Err(CommandError::misuse(flag, format!("{colour} is impossible: 0 to {most} is possible")))
+        }
+        None => Ok(()),
+    }
+}

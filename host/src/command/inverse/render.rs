@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! `airlight inverse render`: pictures to paint on.
+
+use super::conflicts::check_medium;
+use super::fits::Needs;
+use super::options::RenderOptions;
+use super::places::check_names;
+use super::studio::{Look, Seen, Shot, Studio};
+use super::views::{read_views, write_views};
+use super::volumes::Matter;
+use crate::command::staging::Staging;
+use crate::command::{CommandError, progress};
+use crate::inverse::{Basis, Channels};
+use crate::{Gpu, Shaders};
+use glam::Vec3;
+use std::path::PathBuf;
+
+/// Runs the command.
+pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
+    let flags = &options.medium;
+    check_medium(flags)?;
+    let views = read_views(&flags.views)?;
+    let mut names: Vec<PathBuf> = vec!["views.toml".into()];
+    names.extend(
+        views.iter().flat_map(|view| ["png", "exr"].map(|end| format!("{}.{end}", view.name).into())),
+    );
+    check_names(flags, &views, &names)?;
+    let staging = Staging::new(&flags.out, names)?;
+    let bar = progress::bar(3, quiet);
+    bar.set_message("reading the volume");
+    let channels = Channels::Rgb;
+    let matter = Matter::new(flags, channels)?;
+    let steps = steps(flags.steps, matter.extinction.size);
+    let seen = views.iter().map(|view| Seen::new(view, &matter, steps, channels));
+    let seen = seen.collect::<Result<Vec<_>, _>>()?;
+    bar.inc(1);
+
+    bar.set_message("rendering");
+    let gpu = pollster::block_on(Gpu::new())?;
+    let known = known(&matter);
+    let sizes: Vec<(&str, [u32; 2])> =
+        seen.iter().map(|seen| (seen.name(), seen.loaded.description.size)).collect();
+    Needs { channels, known: &known, unknown: &[], views: &sizes, steps: false }.check(&gpu.limits)?;
+    let shaders = Shaders::builtin();
+    let form = (channels, Basis::Triangle);
+    let studio = Studio::new((&gpu, &shaders), form, matter.place, steps, flags.ambient)?;
+    let look = Look { extinction: matter.extinction, emission: matter.emission, albedo: matter.albedo };
+    let shots: Vec<Shot<'_>> = seen.iter().map(Seen::shot).collect();
+    let pictures = studio.pictures(&look, &shots)?;
+    bar.inc(1);
+
+    bar.set_message("writing");
+    let composed: Vec<Vec<Vec3>> =
+        seen.iter().zip(&pictures).map(|(seen, picture)| picture.over(&seen.background)).collect();
+    let written: Vec<_> = views.iter().zip(composed.iter().map(Vec::as_slice)).collect();
+    let written = write_views(staging.path(""), &written)?;
+    staging.publish()?;
+    bar.finish_and_clear();
+    for (view, written) in views.iter().zip(&written).filter(|(_, written)| written.clipped > 0) {
+        eprintln!(
+            "airlight: warning: view `{}`: {} pixels are brighter than {}.png holds: let `target` name the .exr, or give less --ambient",
+            view.name, written.clipped, view.name
+        );
+    }
+    if !quiet {
+        matter.report.iter().for_each(|line| println!("{line}"));
+        println!("views: {}", views.len());
+        println!("{}", flags.out.join("views.toml").display());
+    }
+    Ok(())
+}
+
+/// Steps of rays where none are asked for: as many as voxels along the longest side.
+pub fn steps(asked: Option<u32>, size: [u32; 3]) -> u32 {
+    asked.unwrap_or_else(|| size.into_iter().max().unwrap_or(1).min(2048))
+}
+
+/// What of a volume has to fit.
+pub fn known(matter: &Matter) -> [(&'static str, &'static str, [u32; 3]); 3] {
+    [
+        ("--volume", "extinction", matter.extinction.size),
+        ("--emission", "emission", matter.emission.size),
+        ("--albedo", "albedo", matter.albedo.size),
+    ]
+}

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The volume: its extinction, emission and albedo, read or made, without numbers that mean nothing.
+
+use super::field::{Field, reduced};
+use super::options::{MediumFlags, Property};
+use crate::command::CommandError;
+use crate::command::error::medium_error;
+use crate::command::volumes::{load_all, voxels};
+use crate::data::{Bounds, Volume, cloud, cloud_bank, load_channels, plume, smoke};
+use crate::inverse::Channels;
+use glam::{Mat4, Vec3};
+use std::path::{Path, PathBuf};
+
+/// Optical depth along the longest side of a file, were all of it as dense as its densest voxel.
+const OPTICAL_DEPTH: f32 = 32.0;
+/// Voxels along the longest side of what is made.
+const VOXELS: u32 = 64;
+/// How far the corners of two volumes of one place may lie apart, of the longest side.
+const SAME_PLACE: f32 = 1e-3;
+/// Greatest emission that is read.
+const MOST_EMISSION: f32 = 1e4;
+
+/// A volume, or what makes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source<'a> {
+    Cloud,
+    Clouds,
+    Plume,
+    Smoke,
+    File(&'a Path),
+}
+
+impl<'a> Source<'a> {
+    /// What a name or a path means.
+    pub fn of(volume: &'a Path) -> Self {
+        match volume.to_str() {
+            Some("cloud") => Self::Cloud,
+            Some("clouds") => Self::Clouds,
+            Some("plume") => Self::Plume,
+            Some("smoke") => Self::Smoke,
+            _ => Self::File(volume),
+        }
+    }
+}
+
+/// What is in the box of the volume.
+pub struct Matter {
+    /// From the box 0..1 to the world, metres.
+    pub place: Mat4,
+    /// 1/m, 0 and more.
+    pub extinction: Field,
+    /// Radiance, 0 and more.
+    pub emission: Field,
+    /// 0..1.
+    pub albedo: Field,
+    /// What is to be said, a line each.
+    pub report: Vec<String>,
+}
+
+impl Matter {
+    /// Reads or makes it.
+    ///
+    /// # Errors
+    /// Misuse: an unknown name. A failure: a file, or properties that lie elsewhere than the volume.
+    pub fn new(flags: &MediumFlags, channels: Channels) -> Result<Self, CommandError> {
+        let mut report = Vec::new();
+        let volumes = volumes(flags)?;
+        let place = volumes[0].world_from_unit;
+        let mut field = field(&volumes);
+        let made = !matches!(Source::of(&flags.volume), Source::File(_));
+        let threshold = flags.threshold.unwrap_or(0.0);
+        let bad = field.values.iter().filter(|value| !value.is_finite() || value.min_element() < 0.0).count();
+        for value in &mut field.values {
+            *value = clean(*value - threshold, f32::MAX);
+        }
+        let greatest = field.values.iter().map(|value| value.max_element()).fold(0.0, f32::max);
+        let longest = edges(place).into_iter().fold(0.0, f32::max);
+        let usual = if made || greatest == 0.0 { 1.0 } else { OPTICAL_DEPTH / (longest * greatest) };
+        let scale = flags.extinction_scale.unwrap_or(usual);
+        for value in &mut field.values {
+            *value = reduced((*value * scale).min(Vec3::splat(1e6)), channels);
+        }
+        report.push(format!("extinction: {scale:.4} 1/m a unit of value above {threshold}"));
+        if bad > 0 {
+            let voxels = field.values.len();
+            report.push(format!("voxels: {voxels}; taken as empty: {bad} not finite or negative"));
+        }
+        let property = |flag: &str, of: &Property, most: f32| {
+            let mut field = match of {
+                Property::Constant(colour) => Field::constant(*colour),
+                Property::File(path) => placed(flag, path, place)?,
+            };
+            field.values.iter_mut().for_each(|value| *value = reduced(clean(*value, most), channels));
+            Ok::<_, CommandError>(field)
+        };
+        let emission = property("--emission", &flags.emission, MOST_EMISSION)?;
+        let albedo = property("--albedo", &flags.albedo, 1.0)?;
+        Ok(Self { place, extinction: field, emission, albedo, report })
+    }
+
+    /// The box around it in the world, metres.
+    pub fn bounds(&self) -> Bounds {
+        let unit = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
+        let corners = unit.corners().map(|corner| self.place.transform_point3(corner));
+        Bounds::of(corners).unwrap_or(unit)
+    }
+}
+
+/// Metres of the edges of a box.
+fn edges(place: Mat4) -> [f32; 3] {
+    [place.x_axis, place.y_axis, place.z_axis].map(|edge| edge.truncate().length())
+}
+
+/// Voxels of a volume in such a place with `count` along its longest side.
+pub fn voxels_of(place: Mat4, count: u32) -> [u32; 3] {
+    voxels(count, edges(place))
+}
+
+/// From 0 to the most; 0 where it is no number.
+fn clean(value: Vec3, most: f32) -> Vec3 {
+    Vec3::from(value.to_array().map(|value| if value.is_finite() { value.clamp(0.0, most) } else { 0.0 }))
+}
+
+fn volumes(flags: &MediumFlags) -> Result<Vec<Volume>, CommandError> {
+    let (count, seed) = (flags.voxels.unwrap_or(VOXELS), flags.seed.unwrap_or(1));
+    Ok(match Source::of(&flags.volume) {
+        Source::Cloud => vec![cloud(voxels(count, [6.0, 3.0, 5.0]), seed)],
+        Source::Clouds => vec![cloud_bank(voxels(count, [16.0, 4.0, 16.0]), seed)],
+        Source::Plume => vec![plume(voxels(count, [2.0, 5.0, 2.0]), seed)],
+        Source::Smoke => vec![smoke(voxels(count, [4.0, 3.0, 4.0]), seed)],
+        Source::File(path) => {
+            let known = "cloud, clouds, plume, smoke, or a file that ends in .nii, .nii.gz or .npy";
+            load_all(path, flags.voxel, known)?
+        }
+    })
+}
+
+/// One volume is grey.
+fn field(volumes: &[Volume]) -> Field {
+    let channel = |channel: usize| &volumes[channel.min(volumes.len() - 1)].values;
+    let [red, green, blue] = [0, 1, 2].map(channel);
+    let values = red.iter().zip(green).zip(blue).map(|((r, g), b)| Vec3::new(*r, *g, *b));
+    Field { size: volumes[0].size, values: values.collect() }
+}
+
+/// A property from a file, which has to lie where the volume does if it says where.
+fn placed(flag: &str, path: &PathBuf, place: Mat4) -> Result<Field, CommandError> {
+    let known = "a file that ends in .nii, .nii.gz or .npy";
+    let volumes = load_channels(path, 1.0).map_err(|error| medium_error(flag, error, known))?;
+    if !crate::command::volumes::is_array(path) {
+        let own = volumes[0].world_from_unit;
+        let longest = edges(place).into_iter().fold(0.0, f32::max);
+        let corners = Bounds { min: Vec3::ZERO, max: Vec3::ONE }.corners();
+        let apart =
+            corners.map(|corner| own.transform_point3(corner).distance(place.transform_point3(corner)));
+        let most = apart.into_iter().fold(0.0, f32::max);
+        if most > SAME_PLACE * longest {
+            return Err(CommandError::failure(format!(
+                "{flag}: {} lies elsewhere than --volume, up to {most} m apart: resample it to the same box, or give a .npy, which has no place",
+                path.display()
+            )));
+        }
+    }
+    Ok(field(&volumes))
+}
