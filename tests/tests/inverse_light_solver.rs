@@ -105,11 +105,11 @@ struct Case {
 }
 
 impl Case {
-    /// A ball of a medium in the light of sixteen discs.
+    /// A dense ball in the light of sixteen discs: in a thin one light from one side is as good as from the other.
     fn new(channels: Channels, random: &mut Random) -> Self {
         let density = |unit: Vec3| {
             let way = unit - Vec3::new(0.5, 0.5, 0.5);
-            5.0 * (1.0 - 4.0 * way.dot(way)).max(0.0)
+            12.0 * (1.0 - 4.0 * way.dot(way)).max(0.0)
         };
         let dense = Grid::from_fn(EXTINCTION.map(|side| side as usize), density);
         let dense: Vec<f32> =
@@ -263,9 +263,9 @@ fn lights_come_back_from_their_own_pictures() {
         let weights = vec![vec![1.0; count(&VIEW)]; pictures.len()];
         let mut solver = case.solver(strategy, Some((&pictures, &weights)), 0.0);
         let mut worst = 0.0;
-        for iteration in 1..=120 {
+        for iteration in 1..=200 {
             solver.iterate(gpu()).unwrap();
-            if [6, 16, 30, 60, 120].contains(&iteration) {
+            if [6, 16, 60, 120, 200].contains(&iteration) {
                 let found = solver.coefficients(gpu()).unwrap();
                 let off = found.iter().zip(&known).enumerate().filter(|(place, _)| place % 4 != 3);
                 worst = off.map(|(_, (a, b))| (a - b).abs()).fold(0.0, f32::max) / most;
@@ -275,7 +275,7 @@ fn lights_come_back_from_their_own_pictures() {
         }
         let residuals: Vec<f32> =
             solver.residuals(gpu()).unwrap().iter().map(|rgb| rgb.iter().sum()).collect();
-        assert!(residuals.len() == 120 && residuals[5] < 0.02 * residuals[0], "{residuals:?}");
+        assert!(residuals.len() == 200 && residuals[5] < 0.02 * residuals[0], "{residuals:?}");
         assert!(worst < 0.02, "{strategy:?}: {worst}");
     }
 }
@@ -311,7 +311,7 @@ fn impossible_pictures_have_their_least_squares() {
     let nothing = problem.cost(&[0.0; LIGHTS]);
     for strategy in STRATEGIES {
         let mut solver = case.solver(strategy, Some((&wanted, &weights)), smallness);
-        for _ in 0..60 {
+        for _ in 0..150 {
             solver.iterate(gpu()).unwrap();
         }
         let found: Vec<f64> = solver.coefficients(gpu()).unwrap().into_iter().map(f64::from).collect();
@@ -320,7 +320,7 @@ fn impossible_pictures_have_their_least_squares() {
         let dark = found.iter().filter(|value| **value == 0.0).count();
         println!("{strategy:?}: {left:.1e} of the way is left; {dark} lights are black");
         let residuals = solver.residuals(gpu()).unwrap();
-        assert!(residuals[59][0] < residuals[0][0] && dark > 0, "{residuals:?}");
+        assert!(residuals[149][0] < residuals[0][0] && dark > 0, "{residuals:?}");
         assert!(left > -1e-6 && left < 1e-6, "{strategy:?}: {left}");
     }
 }
