@@ -100,13 +100,15 @@ struct Case {
     channels: Channels,
     extinction: Vec<f32>,
     albedo: Vec<f32>,
+    /// Voxels of light volumes.
+    size: [u32; 3],
     /// Of each light, as the GPU computed it.
     volumes: Vec<Vec<f32>>,
 }
 
 impl Case {
     /// A dense ball in the light of sixteen discs: in a thin one light from one side is as good as from the other.
-    fn new(channels: Channels, random: &mut Random) -> Self {
+    fn new(channels: Channels, size: [u32; 3], random: &mut Random) -> Self {
         let density = |unit: Vec3| {
             let way = unit - Vec3::new(0.5, 0.5, 0.5);
             12.0 * (1.0 - 4.0 * way.dot(way)).max(0.0)
@@ -121,9 +123,10 @@ impl Case {
             (0..LIGHTS).map(|disc| discs.lights(disc, 3).into_iter().map(Lighting::from).collect()).collect();
         let maps = LightMaps { texels: 24, layers: 24, shadow_texels: 64 };
         let passes = LightPasses::new(gpu(), shaders(), channels).unwrap().with_maps(maps).unwrap();
-        let volumes = passes.scattered_each(gpu(), &texture, placed(), SIZE, &groups, None).unwrap();
+        let volumes = passes.scattered_each(gpu(), &texture, placed(), size, &groups, None).unwrap();
         Self {
             channels,
+            size,
             extinction: spread(&dense, channels, FACTORS),
             albedo: spread(&albedo, channels, [1.0; 3]),
             volumes: volumes.iter().map(|volume| volume.read(gpu()).unwrap()).collect(),
@@ -164,7 +167,7 @@ impl Case {
             targets.push(Target { view, medium: Arc::clone(&medium), wanted, weights });
         }
         let unknown = LightUnknown {
-            volumes: self.volumes.iter().map(|values| self.texture(SIZE, values)).collect(),
+            volumes: self.volumes.iter().map(|values| self.texture(self.size, values)).collect(),
             start: vec![0.0; self.channels.numbers() * LIGHTS],
             smallness,
             strategy,
@@ -178,7 +181,7 @@ impl Case {
         let extinction = grid(EXTINCTION, &self.extinction, self.channels, channel);
         let albedo = grid(ALBEDO, &self.albedo, self.channels, channel);
         let volumes: Vec<Grid> =
-            self.volumes.iter().map(|values| grid(SIZE, values, self.channels, channel)).collect();
+            self.volumes.iter().map(|values| grid(self.size, values, self.channels, channel)).collect();
         cameras()
             .iter()
             .map(|(camera, _)| {
@@ -215,8 +218,9 @@ fn channel_of(values: &[f32], channels: Channels, channel: usize) -> impl Iterat
 fn both_ways_multiply_with_the_matrix_of_lights_and_its_transpose() {
     let _turn = gpu::turn();
     let mut random = Random(21);
-    for channels in [Channels::One, Channels::Rgb] {
-        let case = Case::new(channels, &mut random);
+    // More groups of voxels than a group has threads, and fewer.
+    for (channels, size) in [(Channels::One, [40, 24, 23]), (Channels::Rgb, SIZE)] {
+        let case = Case::new(channels, size, &mut random);
         let numbers = channels.numbers();
         let mut some = |count: usize, low: f64| -> Vec<f32> {
             (0..count).map(|_| random.between(low, 1.0) as f32).collect()
@@ -252,7 +256,7 @@ fn both_ways_multiply_with_the_matrix_of_lights_and_its_transpose() {
 fn lights_come_back_from_their_own_pictures() {
     let _turn = gpu::turn();
     let mut random = Random(8);
-    let case = Case::new(Channels::Rgb, &mut random);
+    let case = Case::new(Channels::Rgb, SIZE, &mut random);
     // Some lights are black.
     let known: Vec<f32> = (0..4 * LIGHTS)
         .map(|place| if place % 4 == 3 { 0.0 } else { random.between(-0.3, 2.0).max(0.0) as f32 })
@@ -284,7 +288,7 @@ fn lights_come_back_from_their_own_pictures() {
 fn impossible_pictures_have_their_least_squares() {
     let _turn = gpu::turn();
     let mut random = Random(13);
-    let case = Case::new(Channels::One, &mut random);
+    let case = Case::new(Channels::One, SIZE, &mut random);
     let mut some = |low: f64, high: f64| -> Vec<Vec<f32>> {
         let one = |_| (0..count(&VIEW)).map(|_| random.between(low, high).max(-0.2) as f32).collect();
         (0..cameras().len()).map(one).collect()
