@@ -2,7 +2,6 @@
 // summary: Keeps the picture of a volume in one light: a column of the matrix T.
 // source: Klehm, "Stylized scattering", thesis, 7.4.3: T is stored.
 // note: Dispatch over the picture, after it has been rendered, for each light.
-// definition RGB: three channels, four numbers a pixel; else one.
 // binding number: which light.
 // binding rendered: the picture, r32float or rgba32float.
 // binding columns: out, numbers a pixel, row after row, one light after the other.

@@ -2,7 +2,6 @@
 // summary: Products of the volume of each light with what pictures have sent back: the transpose of pictures of lights.
 // source: Klehm, "Stylized scattering", thesis, 7.4.3, with sums of groups in place of atomic additions: T'c = volume . (W'c).
 // note: Dispatch volume_products over the voxels for each light, then add_products once, a group for each light. Always added up in the same order.
-// definition RGB: three channels, each by itself; else one.
 // binding number: which light; for add_products any.
 // binding grid: the voxels.
 // binding volume: what the light alone makes the volume scatter.
