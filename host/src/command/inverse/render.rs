@@ -3,6 +3,7 @@
 
 use super::conflicts::check_medium;
 use super::fits::Needs;
+use super::light::Illumination;
 use super::options::RenderOptions;
 use super::places::check_names;
 use super::studio::{Look, Seen, Shot, Studio};
@@ -43,7 +44,8 @@ pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
     Needs { channels, known: &known, unknown: &[], views: &sizes, steps: false }.check(&gpu.limits)?;
     let shaders = Shaders::builtin();
     let form = (channels, Basis::Triangle);
-    let studio = Studio::new((&gpu, &shaders), form, matter.place, steps, flags.ambient)?;
+    let studio =
+        Studio::new((&gpu, &shaders), form, matter.place, steps, Illumination::Ambient(flags.ambient))?;
     let look = Look { extinction: matter.extinction, emission: matter.emission, albedo: matter.albedo };
     let shots: Vec<Shot<'_>> = seen.iter().map(Seen::shot).collect();
     let pictures = studio.pictures(&look, &shots)?;

@@ -7,6 +7,7 @@ use super::conflicts::check;
 use super::error::SolveError;
 use super::field::reduced;
 use super::fits::Needs;
+use super::light::Illumination;
 use super::options::{SolveOptions, Wanted};
 use super::parts::Property;
 use super::places::check_names;
@@ -58,7 +59,8 @@ pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
     fits(options, &gpu, &matter, &seen)?;
     let basis = Basis::from(options.basis);
     let (shaders, place) = (Shaders::builtin(), matter.place);
-    let studio = Studio::new((&gpu, &shaders), (channels, basis), place, steps, flags.ambient)?;
+    let studio =
+        Studio::new((&gpu, &shaders), (channels, basis), place, steps, Illumination::Ambient(flags.ambient))?;
     let mut look = Look { extinction: matter.extinction, emission: matter.emission, albedo: matter.albedo };
     let medium = reduced(options.medium_radiance.unwrap_or(Vec3::ZERO), channels);
     let stages = Stages { studio: &studio, flags: options, seen: &seen, medium, cancel: &cancel, bar: &bar };

@@ -3,13 +3,14 @@
 
 use super::error::SolveError;
 use super::field::{Field, colours, reduced};
-use super::light::scattered_volume;
+use super::light::Illumination;
 use super::views::{LoadedView, ViewDescription, load_view};
 use super::volumes::Matter;
 use crate::command::CommandError;
 use crate::core::Camera;
 use crate::inverse::{
-    Basis, Channels, Fields, InverseError, Medium, Projector, ProjectorForm, SliceView, Solved, meets_volume,
+    Basis, Channels, Fields, InverseError, LightPasses, Medium, Projector, ProjectorForm, SliceView, Solved,
+    meets_volume,
 };
 use crate::{Gpu, Shaders};
 use glam::{Mat4, Vec3};
@@ -113,14 +114,16 @@ pub struct Studio<'a> {
     pub place: Mat4,
     /// Across the volume.
     pub steps: u32,
-    /// From all around, as the channels have it.
-    pub ambient: Vec3,
+    /// What is scattered.
+    pub illumination: Illumination,
+    /// Lights the volume.
+    pub lighting: LightPasses,
     /// Renders all there is.
     pub renderer: Projector,
 }
 
 impl<'a> Studio<'a> {
-    /// A studio. `ambient`: linear RGB radiance from all around.
+    /// A studio.
     ///
     /// # Errors
     /// [`InverseError::Pass`].
@@ -129,12 +132,12 @@ impl<'a> Studio<'a> {
         (channels, basis): (Channels, Basis),
         place: Mat4,
         steps: u32,
-        ambient: Vec3,
+        illumination: Illumination,
     ) -> Result<Self, InverseError> {
         let form = ProjectorForm { basis, ..ProjectorForm::new(Solved::Both, channels) };
         let renderer = Projector::new(gpu, shaders, form)?;
-        let ambient = reduced(ambient, channels);
-        Ok(Self { gpu, shaders, channels, basis, place, steps, ambient, renderer })
+        let lighting = LightPasses::new(gpu, shaders, channels)?;
+        Ok(Self { gpu, shaders, channels, basis, place, steps, illumination, lighting, renderer })
     }
 
     /// What is known of a volume, for passes.
@@ -142,12 +145,10 @@ impl<'a> Studio<'a> {
     /// # Errors
     /// [`InverseError::Gpu`].
     pub fn medium(&self, look: &Look) -> Result<Medium, InverseError> {
-        let scattered = scattered_volume(&look.extinction, self.ambient);
-        Ok(Medium {
-            extinction: look.extinction.texture(self.gpu, self.channels)?,
-            scattered: scattered.texture(self.gpu, self.channels)?,
-            index: None,
-        })
+        let extinction = look.extinction.texture(self.gpu, self.channels)?;
+        let passes = (&self.lighting, self.channels);
+        let scattered = self.illumination.scattered(self.gpu, passes, (&extinction, self.place))?;
+        Ok(Medium { extinction, scattered, index: None })
     }
 
     /// What does what.
