@@ -216,6 +216,21 @@ fn channel_of(values: &[f32], channels: Channels, channel: usize) -> impl Iterat
 }
 
 #[test]
+fn discs_of_light_make_even_surroundings() {
+    let _turn = gpu::turn();
+    // Clear air scatters what comes from everywhere: a radiance of 1 is a radiance of 1.
+    let texture = volume([2; 3], &[0.0; 8], Channels::One, FACTORS);
+    let discs = disc_lights(32, false);
+    let lights: Vec<Lighting> = (0..32).flat_map(|disc| discs.lights(disc, 2)).map(Lighting::from).collect();
+    let passes = LightPasses::new(gpu(), shaders(), Channels::One).unwrap();
+    let found = passes.scattered(gpu(), &texture, placed(), [5, 4, 3], &lights, None).unwrap();
+    let expected = 32.0 * discs.solid_angle() / (4.0 * std::f32::consts::PI);
+    for value in found.read(gpu()).unwrap() {
+        assert!((value - expected).abs() < 1e-5 && (value - 1.0).abs() < 0.01, "{value} {expected}");
+    }
+}
+
+#[test]
 fn both_ways_multiply_with_the_matrix_of_lights_and_its_transpose() {
     let _turn = gpu::turn();
     let mut random = Random(21);
