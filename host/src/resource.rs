@@ -54,6 +54,16 @@ impl Buffer {
         usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC
     }
 
+    /// A storage buffer of numbers.
+    pub fn of_floats(gpu: &Gpu, values: &[f32]) -> Self {
+        Self::with_bytes(gpu, &bytes_of(values), wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Writes numbers from its beginning on.
+    pub fn write_floats(&self, gpu: &Gpu, values: &[f32]) {
+        gpu.queue.write_buffer(&self.raw, 0, &bytes_of(values));
+    }
+
     /// Replaces the start of the contents by the WGSL layout of `value`.
     pub fn write<T: ShaderType + WriteInto>(&self, gpu: &Gpu, value: &T) {
         let mut bytes = encase::UniformBuffer::new(Vec::<u8>::new());
@@ -394,4 +404,9 @@ impl Sampler {
     fn create(gpu: &Gpu, descriptor: &wgpu::SamplerDescriptor<'_>) -> Self {
         Self { raw: gpu.device.create_sampler(descriptor), comparison: descriptor.compare.is_some() }
     }
+}
+
+/// Bytes as buffers hold them.
+fn bytes_of(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::basis
 // summary: Fields as sums of basis functions, one a voxel: triangle or box functions.
-// source: Klehm, "Stylized scattering", thesis, 7.3.1.
+// source: thesis 7.3.1.
 // note: Weights are computed in 32 bits and by hand: texture units round them to 8 bits, and reading and adding up have to agree.
 // note: Positions are in unit space; voxel i lies at (i + 0.5) / size. Beyond the outermost voxels triangles keep the value of the nearest.
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::bent_rays
 // summary: View rays that an index of refraction bends inside the box, in steps of one length; a picture and its back-projection take the same.
-// source: Ihrke et al., "Eikonal rendering" (2007); Klehm, "Stylized scattering", thesis, 7.3.
+// source: Ihrke et al., "Eikonal rendering" (2007); thesis 7.3.
 // note: Euler forward: x += ds v / |v|, v += ds grad n, and v is scaled to |v| = n. Errors fall with the step. The gradient is of central
 // note: differences over half a voxel to both sides; the index goes on beyond the outermost voxels as all fields of triangles do.
 // note: Rays are straight up to the box and are not refracted by its faces. They end where they leave it, at a surface, whose depth counts along

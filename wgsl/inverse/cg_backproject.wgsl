@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::cg_backproject
 // summary: Which pixels and slices a voxel collects from when a picture is projected back into the volume.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1: the transpose of rendering.
+// source: thesis 7.4.1: the transpose of rendering.
 // note: The thesis scatters from pixels to voxels, with additions that race. Here each voxel collects from the few pixels whose samples its
 // note: basis function reaches, always in the same order. A sample lies on the middle plane of its slice: of rays that cross the slice whole where
 // note: they cross that plane, of others beside a point of the slice. So a pixel with a sample in a support has its middle in the projection of

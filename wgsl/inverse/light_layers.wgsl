@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::light_layers
 // summary: A light's view of a volume in layers across its way, which hold optical depth: an opacity shadow map.
-// source: Kim and Neumann, "Opacity shadow maps" (2001); Klehm, "Stylized scattering", thesis, 2.4.3.
+// source: Kim and Neumann, "Opacity shadow maps" (2001); thesis 2.4.3.
 // note: Layers hold the optical depth from the first one on, as if the medium went on beyond the faces of its box with what is outermost: so it
 // note: bends nowhere, and values between rays are right also next to the faces, where some have entered and others have not. The depth
 // note: of a point is what lies between it and the place where its own ray enters the box, which is known exactly.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::light_numbers
 // summary: Which of the lights that are solved for is meant, and where its numbers lie.
-// source: Klehm, "Stylized scattering", thesis, 7.4.3: pictures are a product with the light that comes from each part of the surroundings.
+// source: thesis 7.4.3: pictures are a product with the light that comes from each part of the surroundings.
 // definition RGB: three channels, four numbers a light and a pixel; else one.
 
 #ifdef RGB

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::slice_steps
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
+// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
 // note: The listing lacks the length of a step and has the wrong sign in the exponent: a step of length d through extinction s takes up
 // note: 1 - exp(-s d). Here the steps of one ray add up to its way in the box, the last one before a surface too, so that the weights
 // note: of a ray add up to 1 - transmittance.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::inverse::solver_steps
 // summary: Steps of conjugate gradients between bounds, for least squares whose matrix is a rendering.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1 and 7.4.2; the direction of Polak and Ribiere (1969); Shewchuk (1994).
+// source: thesis 7.4.1 and 7.4.2; the direction of Polak and Ribiere (1969); Shewchuk (1994).
 // note: What is minimised is sum C (W a - o)^2 + l |L a|^2 + s |a|^2 + t |a - 1|^2: its half gradient is W'C(W a - o) + l L'L a + s a + t (a - 1),
 // note: and it is subtracted; the thesis says "adding". Clamping breaks the recursion of the residual, which then stalls, so the gradient
 // note: is computed anew in every iteration; a voxel at a bound to which the gradient pushes it is left out. Of Polak and Ribiere's factor only

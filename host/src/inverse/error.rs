@@ -63,3 +63,8 @@ pub enum InverseError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
+
+/// Refuses another number of numbers than is needed.
+pub(super) fn exact(name: &'static str, needed: usize, given: usize) -> Result<(), InverseError> {
+    if needed == given { Ok(()) } else { Err(InverseError::Count { name, needed, given }) }
+}

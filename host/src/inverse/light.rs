@@ -5,7 +5,7 @@ mod views;
 
 pub use views::LightLayers;
 
-use super::projector::{BRICK, tiles};
+use super::projector::{bricks, tiles};
 use super::{Channels, InverseError, VoxelGrid};
 use crate::core::{MeshBuffers, Raster};
 use crate::data::{Bounds, EnvironmentLight};
@@ -254,11 +254,6 @@ impl LightPasses {
         let groups = bricks(view.layers.size.to_array());
         Ok(scatter.dispatch_groups(encoder, &bound, "scatter_light", groups)?)
     }
-}
-
-/// Groups of a dispatch over the voxels of a volume.
-fn bricks(size: [u32; 3]) -> [u32; 3] {
-    [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]))
 }
 
 /// Refuses light that is negative or no number. Directions, places and cones are refused where views are made.

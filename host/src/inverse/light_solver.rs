@@ -6,7 +6,8 @@ mod strategy;
 
 pub use strategy::LightNumber;
 
-use super::projector::tiles;
+use super::error::exact;
+use super::projector::{bricks, tiles};
 use super::{InverseError, Projector, Solved, SolverSums, Target};
 use crate::gpu::Gpu;
 use crate::out_of_range::in_range;
@@ -14,7 +15,7 @@ use crate::pass::{Bound, Pass};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
-use held::{Coefficients, Scratch, Sitting, bricks, bytes_of, exact};
+use held::{Coefficients, Scratch, Sitting};
 use strategy::{Columns, Operator, Volumes, check_columns};
 
 /// Scalars before the residuals.
@@ -162,7 +163,7 @@ impl LightSolver {
         let lights = self.coefficients.count as usize;
         let scale = squares / (self.projector.channels().used() * lights) as f32;
         let own = &mut self.coefficients;
-        gpu.queue.write_buffer(&own.vectors[SOLUTION].raw, 0, &bytes_of(start));
+        own.vectors[SOLUTION].write_floats(gpu, start);
         own.settings.smallness = scale * smallness;
         own.settings.steepest = scale * STEEPEST;
         own.uniform.write(gpu, &own.settings);
@@ -256,7 +257,7 @@ impl LightSolver {
     pub fn pictures(&self, gpu: &Gpu, coefficients: &[f32]) -> Result<Vec<Vec<f32>>, InverseError> {
         let needed = self.projector.channels().numbers() * self.coefficients.count as usize;
         exact("coefficients of lights", needed, coefficients.len())?;
-        gpu.queue.write_buffer(&self.coefficients.vectors[TRIAL].raw, 0, &bytes_of(coefficients));
+        self.coefficients.vectors[TRIAL].write_floats(gpu, coefficients);
         let mut encoder = gpu.encoder();
         self.operator.render(gpu, &mut encoder, &self.projector, &self.sittings, TRIAL)?;
         gpu.submit(encoder)?;

@@ -63,6 +63,12 @@ fn compute(gpu: &Gpu, shaders: &Shaders, name: &str, flags: &[(&str, bool)]) -> 
     Ok(Pass::compute_with(gpu, shaders, name, &definitions)?)
 }
 
+/// Groups of a dispatch over the voxels of a volume.
+pub(super) fn bricks(size: [u32; 3]) -> [u32; 3] {
+    [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]))
+}
+
+/// Groups of a dispatch over the pixels of a picture.
 pub(super) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(TILE[0]), height.div_ceil(TILE[1]), 1]
 }

@@ -6,7 +6,8 @@ mod uniforms;
 
 pub use uniforms::{SolverPart, SolverScalars, SolverSums};
 
-use super::projector::tiles;
+use super::error::exact;
+use super::projector::{bricks, tiles};
 use super::{Collected, Fields, InverseError, Projector, Solved, Target, Unknown};
 use crate::gpu::Gpu;
 use crate::out_of_range::in_range;
@@ -14,7 +15,7 @@ use crate::pass::{Bound, Pass};
 use crate::resource::Buffer;
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
-use held::{Part, Sitting, bricks, bytes_of, exact};
+use held::{Part, Sitting};
 
 /// Scalars before the residuals.
 const FIRST_RESIDUAL: usize = 3;
@@ -120,7 +121,7 @@ impl Solver {
         let solved = unknowns.iter().flat_map(|unknown| &unknown.solved).filter(|solved| **solved).count();
         let scale = squares / (self.projector.channels().used() * solved).max(1) as f32;
         for part in &mut self.parts {
-            gpu.queue.write_buffer(&part.solution.raw, 0, &bytes_of(&part.start));
+            part.solution.write_floats(gpu, &part.start);
             let settings = &mut part.settings;
             settings.laplacian = scale * part.regulariser.laplacian;
             settings.smallness = scale * part.regulariser.smallness;

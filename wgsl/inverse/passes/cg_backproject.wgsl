@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Projects a picture back into the volume: the product with the transpose of W, in which each voxel collects.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1; see the module of this name.
+// source: thesis 7.4.1; see the module of this name.
 // note: Dispatch over the voxels for each view and each group of its rows; `collected` adds up, from zero on. No additions race: results are
 // note: the same bits in every run.
 // definition PATHS: weights of extinction, the lengths of steps.

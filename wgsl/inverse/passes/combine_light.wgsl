@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Light that a volume scatters in several lights at once: the volume of one light, times its coefficient, is added.
-// source: Klehm, "Stylized scattering", thesis, 7.4.3: light volumes.
+// source: thesis 7.4.3: light volumes.
 // note: Dispatch over the voxels for each light, the first one first: it replaces what was there. Then inverse/pack_volume.
 // binding number: which light.
 // binding grid: the voxels.

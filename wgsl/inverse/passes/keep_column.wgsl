@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Keeps the picture of a volume in one light: a column of the matrix T.
-// source: Klehm, "Stylized scattering", thesis, 7.4.3: T is stored.
+// source: thesis 7.4.3: T is stored.
 // note: Dispatch over the picture, after it has been rendered, for each light.
 // binding number: which light.
 // binding rendered: the picture, r32float or rgba32float.

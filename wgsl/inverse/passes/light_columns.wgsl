@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: The picture of a volume in all lights, and what a picture says of each light: products with T, which is stored, and its transpose.
-// source: Klehm, "Stylized scattering", thesis, 7.4.3, with sums of groups in place of atomic additions.
+// source: thesis 7.4.3, with sums of groups in place of atomic additions.
 // note: Dispatch light_picture over the picture, and light_residual with a group for each light; always added up in the same order.
 // definition RGB: three channels, each by itself; else one.
 // binding number: how many lights there are.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Products of the volume of each light with what pictures have sent back: the transpose of pictures of lights.
-// source: Klehm, "Stylized scattering", thesis, 7.4.3, with sums of groups in place of atomic additions: T'c = volume . (W'c).
+// source: thesis 7.4.3, with sums of groups in place of atomic additions: T'c = volume . (W'c).
 // note: Dispatch volume_products over the voxels for each light, then add_products once, a group for each light. Always added up in the same order.
 // binding number: which light; for add_products any.
 // binding grid: the voxels.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: What is wrong with a picture, or the picture itself, weighed, and sums of squares over it.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1: c = W a - o, and per-pixel weights of 7.4.2.
+// source: thesis 7.4.1: c = W a - o, and per-pixel weights of 7.4.2.
 // note: Dispatch over the picture: weigh_difference before the picture is projected back, weigh_picture of the picture of a direction. Sums of
 // note: groups are added up by inverse/solver_scalars, always in the same order.
 // definition RGB: three channels; else one.

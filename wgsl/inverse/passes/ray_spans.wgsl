@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Which part of each view ray lies in the volume before the first surface.
-// source: Klehm, "Stylized scattering", thesis, Listing 7.1.
+// source: thesis Listing 7.1.
 // note: Dispatch over the picture, once for a view. What is not finite in `depths` counts as no surface.
 // definition BENT: rays are bent in the volume: they end at the surface at the latest, and where they leave the volume is not asked.
 // binding view: the view.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: A picture of a volume, linear in what is solved for: the product with W.
-// source: Klehm, "Stylized scattering", thesis, 7.3.2, Eq. 7.4, 7.6, 7.8 and 7.13, Listing 7.1.
+// source: thesis 7.3.2, Eq. 7.4, 7.6, 7.8 and 7.13, Listing 7.1.
 // note: Dispatch over the picture of a view.
 // note: A step of length d through extinction s behind a transmittance T weighs T (1 - exp(-s d)) for emission, and that times scattered light
 // note: for albedo. For extinction it weighs d: the picture is the optical depth, the thesis's o with the other sign.

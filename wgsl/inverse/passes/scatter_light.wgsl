@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Radiance that each voxel would scatter in every direction if its albedo were 1: light of one view of a light is added.
-// source: Klehm, "Stylized scattering", thesis, 2.4.3, Eq. 2.16 with an isotropic phase function; see inverse/light_layers.
+// source: thesis 2.4.3, Eq. 2.16 with an isotropic phase function; see inverse/light_layers.
 // note: Dispatch over the voxels for each view of each light. Irradiance over 4 pi, times transmittance, times what surfaces let pass.
 // definition RGB: three channels; else the first alone.
 // definition SURFACES: there are surfaces that cast shadows.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Projects a picture back into the volume: the product with the transpose of W, in which each ray scatters.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1; see inverse/render_slices, whose steps and weights these are.
+// source: thesis 7.4.1; see inverse/render_slices, whose steps and weights these are.
 // note: Dispatch over the picture of a view, into zeros; then inverse/scattered_sums. Additions are of whole numbers, 64 bits each: results are
 // note: the same bits in every run, although no one knows the order. See inverse/fixed_point for why they do not overflow.
 // note: Where each voxel collects, inverse/cg_backproject, the products are the same; here rays may be bent, and no volume of weighed steps is needed.

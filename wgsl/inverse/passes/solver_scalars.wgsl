@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Adds up what groups have summed, and says how far the solver goes.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1; see inverse/solver_steps.
+// source: thesis 7.4.1; see inverse/solver_steps.
 // note: One group, each entry: keep_residual after inverse/picture_sums, choose_direction after solver_gradient, choose_step after
 // note: solver_curvature.
 // binding counts: how many sums there are.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: What the solver does with each voxel: smoothness, gradient, direction and step.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1 and 7.4.2; see inverse/solver_steps.
+// source: thesis 7.4.1 and 7.4.2; see inverse/solver_steps.
 // note: Dispatch over the voxels: solver_paces once, of what the weighed pictures of ones send back; then in an iteration in this order:
 // note: smooth_solution, solver_gradient, [solver_scalars], solver_direction, solver_curvature, [solver_scalars], solver_advance. Beyond the
 // note: volume and of voxels that are not solved for there is nothing to differ from.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: What each step of a ray sends back into the volume: a pixel's value times the step's weight.
-// source: Klehm, "Stylized scattering", thesis, 7.4.1; see inverse/render_slices, whose weights these are.
+// source: thesis 7.4.1; see inverse/render_slices, whose weights these are.
 // note: Dispatch over some rows of the picture of a view, then inverse/cg_backproject with the same rows. For extinction, where a step weighs its
 // note: length, one slice stands for all: `weighed` has what a step sends back that crosses its slice whole.
 // definition PATHS: weights of extinction, the lengths of steps.

@@ -12,7 +12,6 @@ use crate::{Buffer, Gpu, Shaders, Texture};
 use glam::{Mat4, Vec3};
 use std::f32::consts::TAU;
 use std::sync::Arc;
-use wgpu::BufferUsages;
 use wgpu::TextureFormat::R32Float;
 
 /// What a scene is of.
@@ -47,11 +46,6 @@ fn volume(gpu: &Gpu, side: u32, values: &[f32]) -> Result<Texture, CommandError>
     let texture = Texture::volume(gpu, [side; 3], R32Float);
     texture.write(gpu, values)?;
     Ok(texture)
-}
-
-fn floats(gpu: &Gpu, values: &[f32]) -> Buffer {
-    let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-    Buffer::with_bytes(gpu, &bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST)
 }
 
 /// Numbers from 0 to 1 that look random and are always the same.
@@ -95,8 +89,8 @@ impl Scene {
             medium: Arc::new(medium),
             field: volume(gpu, voxels, &scattered_numbers(count))?,
             picture,
-            solved: floats(gpu, &vec![1.0; count]),
-            collected: floats(gpu, &vec![0.0; count]),
+            solved: Buffer::of_floats(gpu, &vec![1.0; count]),
+            collected: Buffer::of_floats(gpu, &vec![0.0; count]),
             touched: extinction.iter().map(|extinction| *extinction > 0.0).collect(),
         })
     }

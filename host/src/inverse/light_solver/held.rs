@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What the solver of lights holds of each view, and of the coefficients.
 
-use super::super::projector::{BRICK, tiles};
+use super::super::error::exact;
+use super::super::projector::{bricks, tiles};
 use super::super::{InverseError, Medium, PictureRows, Projector, SolverPart, Target, ViewImages};
 use super::FIRST_RESIDUAL;
 use crate::gpu::Gpu;
@@ -39,21 +40,6 @@ pub(super) struct Coefficients {
     pub(super) vectors: [Buffer; VECTORS],
     pub(super) gradient: Buffer,
     pub(super) bound: Bound,
-}
-
-/// Refuses another number of numbers than is needed.
-pub(super) fn exact(name: &'static str, needed: usize, given: usize) -> Result<(), InverseError> {
-    if needed == given { Ok(()) } else { Err(InverseError::Count { name, needed, given }) }
-}
-
-/// Bytes as buffers hold them.
-pub(super) fn bytes_of(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|value| value.to_le_bytes()).collect()
-}
-
-/// Groups of a dispatch over the voxels of a volume.
-pub(super) fn bricks(size: [u32; 3]) -> [u32; 3] {
-    [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]))
 }
 
 impl Scratch {
@@ -129,8 +115,7 @@ impl Coefficients {
             reserved_a: 0,
         };
         let uniform = Buffer::uniform(gpu, &settings);
-        let ones =
-            |count: usize| Buffer::with_bytes(gpu, &bytes_of(&vec![1.0; count]), wgpu::BufferUsages::STORAGE);
+        let ones = |count: usize| Buffer::of_floats(gpu, &vec![1.0; count]);
         let solved = ones(lights);
         let bytes = 4 * (numbers * lights) as u64;
         let [gradient, downward, direction, roughness, trial] = [0; 5].map(|_| Buffer::storage(gpu, bytes));

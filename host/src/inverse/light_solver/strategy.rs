@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures of all lights and their transpose: by volumes that are rendered, or by pictures that are stored.
 
-use super::super::projector::tiles;
+use super::super::projector::{bricks, tiles};
 use super::super::{
     Collected, Fields, InverseError, LightStrategy, Projector, Target, ViewImages, VoxelGrid,
 };
-use super::held::{Sitting, VECTORS, bricks, bytes_of};
+use super::held::{Sitting, VECTORS};
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Texture};
@@ -152,8 +152,7 @@ impl Volumes {
         let resources: [(&str, Resource<'_>); 3] =
             [("grid", (&grid).into()), ("vector", (&combination).into()), ("volume", (&field).into())];
         let packed = pack.bind_known(gpu, &resources)?;
-        let ones = bytes_of(&vec![1.0; voxels as usize]);
-        let wanted = Buffer::with_bytes(gpu, &ones, wgpu::BufferUsages::STORAGE);
+        let wanted = Buffer::of_floats(gpu, &vec![1.0; voxels as usize]);
         Ok(Self {
             size,
             combine,

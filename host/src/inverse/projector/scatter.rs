@@ -2,7 +2,7 @@
 //! The transpose in which rays scatter.
 
 use super::{
-    BRICK, Basis, Channels, Collected, InverseError, Medium, ProjectorForm, Solved, Transpose, ViewImages,
+    Basis, Channels, Collected, InverseError, Medium, ProjectorForm, Solved, Transpose, ViewImages, bricks,
     compute, tiles,
 };
 use crate::gpu::Gpu;
@@ -120,8 +120,4 @@ impl Scatterer {
         }
         Ok(())
     }
-}
-
-fn bricks(size: [u32; 3]) -> [u32; 3] {
-    [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]))
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What the solver holds of each view and of each volume.
 
-use super::super::projector::{BRICK, tiles};
+use super::super::error::exact;
+use super::super::projector::tiles;
 use super::super::{
     InverseError, Medium, PictureRows, Projector, Regulariser, Target, Unknown, ViewImages, VoxelGrid,
 };
@@ -38,21 +39,6 @@ pub(super) struct Part {
     pub(super) bound: Bound,
     /// Of the solution and of the direction.
     pub(super) packs: [Bound; 2],
-}
-
-/// Refuses another number of numbers than is needed.
-pub(super) fn exact(name: &'static str, needed: usize, given: usize) -> Result<(), InverseError> {
-    if needed == given { Ok(()) } else { Err(InverseError::Count { name, needed, given }) }
-}
-
-/// Bytes as buffers hold them.
-pub(super) fn bytes_of(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|value| value.to_le_bytes()).collect()
-}
-
-/// Groups of a dispatch over the voxels of a volume.
-pub(super) fn bricks(size: [u32; 3]) -> [u32; 3] {
-    [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]))
 }
 
 impl Sitting {
@@ -122,10 +108,10 @@ impl Part {
         };
         let uniform = Buffer::uniform(gpu, &settings);
         let counts: Vec<f32> = unknown.solved.iter().map(|solved| f32::from(u8::from(*solved))).collect();
-        let solved = Buffer::with_bytes(gpu, &bytes_of(&counts), wgpu::BufferUsages::STORAGE);
+        let solved = Buffer::of_floats(gpu, &counts);
         let ones: Vec<f32> = (0..channels * voxels).map(|place| counts[place / channels]).collect();
         let start = unknown.start.iter().zip(&ones).map(|(value, one)| value * one).collect();
-        let solution = Buffer::with_bytes(gpu, &bytes_of(&ones), wgpu::BufferUsages::STORAGE);
+        let solution = Buffer::of_floats(gpu, &ones);
         let [gradient, downward, direction, roughness] = [0; 4].map(|_| Buffer::storage(gpu, bytes));
         let texture = Texture::storage_volume(gpu, size, projector.format());
         let resources = [
