@@ -324,7 +324,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     twin!(twins: SliceView {
         origin: Vec3, slices: u32, direction: Vec3, reserved_a: u32, origin_right: Vec3, width: u32,
         direction_right: Vec3, height: u32, origin_down: Vec3, reserved_b: u32, direction_down: Vec3,
-        reserved_c: u32, axis: Vec3, reserved_d: u32, column_of: Vec4, row_of: Vec4, divisor_of: Vec4,
+        reserved_c: u32, axis: Vec3, margin: f32, column_of: Vec4, row_of: Vec4, divisor_of: Vec4,
         edge_x: Vec3, reserved_e: u32, edge_y: Vec3, reserved_f: u32, edge_z: Vec3, reserved_g: u32,
     });
     twin!(twins: PictureRows { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });

@@ -52,6 +52,8 @@ pub(crate) fn declared(source: &str) -> Vec<Import> {
 }
 
 /// A source without the parts that `definitions` leave out; both sides of `#if`, which compares values, stay.
+// What is checked is part of the command.
+#[cfg_attr(not(feature = "command"), allow(dead_code))]
 pub(crate) fn active(source: &str, definitions: &Definitions) -> String {
     let defined = |name: &str| definitions.iter().any(|(known, _)| known == name.trim());
     // Of each condition around a line: whether this branch holds, and whether one before it did.

@@ -290,6 +290,8 @@ impl Library {
     }
 
     /// Paths of the modules that a source imports with `definitions`, and those that these import.
+    // What is checked is part of the command.
+    #[cfg_attr(not(feature = "command"), allow(dead_code))]
     pub(crate) fn reached(&self, source: &str, definitions: &Definitions) -> BTreeSet<String> {
         let paths: BTreeSet<String> = self.modules.iter().map(|module| module.path.clone()).collect();
         let mut reached = BTreeSet::new();
