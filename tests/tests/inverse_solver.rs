@@ -265,8 +265,8 @@ fn own_pictures_come_back() {
     // From nothing, so that what was wrong at first are the pictures themselves.
     let left = [6, 30].map(|iterations| residuals[iterations] / residuals[0]);
     println!("squares that are left after 6 and 30 iterations: {:.1e} {:.1e}", left[0], left[1]);
-    // What lies deep in the medium comes last.
-    assert!(left[0] < 0.02 && left[1] < 3e-4, "{residuals:?}");
+    // What lies deep in the medium comes last. The root is the error of radiance: 1 %.
+    assert!(left[0] < 0.02 && left[1] < 1e-4, "{residuals:?}");
     let all = solver.solutions(gpu()).unwrap();
     assert!(all[0].iter().all(|value| *value >= 0.0));
     assert!(all[1].iter().all(|value| (0.0..=1.0).contains(value)));

@@ -61,16 +61,18 @@ pub fn grid(size: [u32; 3], values: &[f32], factor: f64) -> Grid {
     }
 }
 
-/// Cameras about a box: far and near, parallel, and one within it.
+/// Cameras about a box: far and near, parallel, one within it, and one close to a face, askew, so that part of the box is behind it.
 pub fn cameras() -> Vec<(&'static str, ReferenceCamera, Camera)> {
     let up = Vec3::new(0.1, 1.0, 0.0);
     let target = Vec3::new(0.1, 0.0, -0.2);
     let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
-    let perspective = |eye: Vec3, fov_y: f64, reversed: bool| {
+    let towards = |eye: Vec3, target: Vec3, fov_y: f64, reversed: bool| {
         // Bent rays of the reference begin on the near plane, those of the host in the eye.
         let view = Perspective { eye, target, up, fov_y, aspect, near: 1e-7, far: 30.0, reversed };
         ReferenceCamera::perspective(&view)
     };
+    let perspective = |eye: Vec3, fov_y: f64, reversed: bool| towards(eye, target, fov_y, reversed);
+    let close = Vec3::new(0.39, -0.2, 0.92);
     let parallel = OrthographicView {
         eye: Vec3::new(-2.0, 1.5, 3.0),
         target,
@@ -85,6 +87,7 @@ pub fn cameras() -> Vec<(&'static str, ReferenceCamera, Camera)> {
         ("along x, wide", perspective(Vec3::new(-2.2, 0.4, 0.6), 1.5, true), false),
         ("from above", perspective(Vec3::new(0.7, 3.0, 0.9), 0.9, true), false),
         ("parallel", ReferenceCamera::orthographic(&parallel), true),
+        ("close, askew", towards(close, close + Vec3::new(0.3, 0.15, -0.94), 1.2, false), false),
         ("within", perspective(Vec3::new(0.2, -0.1, 0.3), 1.2, false), false),
     ];
     let host = |(name, camera, parallel): (&'static str, ReferenceCamera, bool)| {
