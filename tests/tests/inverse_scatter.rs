@@ -31,7 +31,12 @@ fn rays_scatter_with_the_weights_of_pictures() {
                 (Basis::Box, Channels::One, 16, false),
                 (Basis::Box, Channels::Rgb, 8, true),
             ] {
-                let case = Case { form: form(solved, basis, channels, transpose), slices, surfaces };
+                let case = Case {
+                    form: form(solved, basis, channels, transpose),
+                    slices,
+                    surfaces,
+                    extinction: 2.5,
+                };
                 let mut worst = 0.0_f64;
                 for (_, reference, camera) in cameras() {
                     worst = worst.max(errors(&case, &reference, &camera, &mut random_)[1]);

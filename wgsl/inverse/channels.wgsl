@@ -4,6 +4,8 @@
 // source: none; arithmetic of one and of three is the same.
 // definition RGB: three channels, each a system of its own; else one.
 
+#import airlight::core::prefix_sum::one_minus_exp
+
 #ifdef RGB
 /// The channels of a texel.
 fn channels_of(texel: vec4<f32>) -> vec3<f32> {
@@ -19,6 +21,16 @@ fn texel_of(value: vec3<f32>) -> vec4<f32> {
 fn all_channels(value: f32) -> vec3<f32> {
     return vec3<f32>(value);
 }
+
+/// Optical depth of a step through an extinction; below 0 there is none.
+fn step_depth(extinction: vec3<f32>, metres: f32) -> vec3<f32> {
+    return max(extinction, vec3<f32>(0.0)) * metres;
+}
+
+/// What a step of an optical depth takes of what passes.
+fn taken_of(depth: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(one_minus_exp(depth.x), one_minus_exp(depth.y), one_minus_exp(depth.z));
+}
 #else
 /// The channel of a texel.
 fn channels_of(texel: vec4<f32>) -> f32 {
@@ -33,5 +45,15 @@ fn texel_of(value: f32) -> vec4<f32> {
 /// The number itself.
 fn all_channels(value: f32) -> f32 {
     return value;
+}
+
+/// Optical depth of a step through an extinction; below 0 there is none.
+fn step_depth(extinction: f32, metres: f32) -> f32 {
+    return max(extinction, 0.0) * metres;
+}
+
+/// What a step of an optical depth takes of what passes.
+fn taken_of(depth: f32) -> f32 {
+    return one_minus_exp(depth);
 }
 #endif

@@ -138,7 +138,7 @@ modules! {
     inverse::slice_steps [],
     inverse::basis [],
     inverse::bent_rays ["core::finite", "inverse::slice_steps", "inverse::basis"],
-    inverse::channels [],
+    inverse::channels ["core::prefix_sum"],
     inverse::cg_backproject ["inverse::basis", "inverse::slice_steps"],
     inverse::fixed_point [],
     inverse::solver_steps [],

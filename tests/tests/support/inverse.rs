@@ -112,6 +112,8 @@ pub struct Case {
     pub slices: u32,
     /// Whether rays end at surfaces.
     pub surfaces: bool,
+    /// Greatest extinction, 1/m.
+    pub extinction: f64,
 }
 
 /// What a projector does with straight rays.
@@ -135,8 +137,8 @@ pub fn index_volume(size: [u32; 3], values: &[f32]) -> Texture {
 /// Greatest error of a picture of the greatest value, and |<Wx, y> - <x, W'y>| of |Wx| |y|.
 pub fn errors(case: &Case, reference: &ReferenceCamera, camera: &Camera, random_: &mut Random) -> [f64; 2] {
     let ProjectorForm { solved, channels, basis, refraction, .. } = case.form;
-    let [extinction, scattered] =
-        [(EXTINCTION, 2.5), (SCATTERED, 1.5)].map(|(size, high)| random(random_, count(size), high));
+    let [extinction, scattered] = [(EXTINCTION, case.extinction), (SCATTERED, 1.5)]
+        .map(|(size, high)| random(random_, count(size), high));
     let unknown = GRIDS.map(|size| random(random_, count(size), 1.0));
     let pixels = SIZE[0] as usize * SIZE[1] as usize;
     let index = index(random_);

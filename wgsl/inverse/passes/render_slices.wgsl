@@ -29,6 +29,9 @@
 #import airlight::inverse::slice_steps::{slices_of, slice_part}
 #endif
 #import airlight::inverse::channels::{channels_of, texel_of, all_channels}
+#ifndef PATHS
+#import airlight::inverse::channels::{step_depth, taken_of}
+#endif
 #import airlight::inverse::basis::{box_field, triangle_field}
 
 @group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
@@ -99,7 +102,7 @@ fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef PATHS
         sum += channels_of(solved(extinction, part.place)) * part.metres;
 #else
-        let passed = channels_of(triangle_field(extinction, part.place)) * part.metres;
+        let passed = step_depth(channels_of(triangle_field(extinction, part.place)), part.metres);
         var radiance = all_channels(0.0);
 #ifdef EMISSION
         radiance += channels_of(solved(emission, part.place));
@@ -107,7 +110,7 @@ fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef ALBEDO
         radiance += channels_of(solved(albedo, part.place)) * channels_of(triangle_field(scattered, part.place));
 #endif
-        sum += exp(-depth) * (1.0 - exp(-passed)) * radiance;
+        sum += exp(-depth) * taken_of(passed) * radiance;
         depth += passed;
 #endif
     }

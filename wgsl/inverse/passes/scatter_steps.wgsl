@@ -29,6 +29,9 @@
 #import airlight::inverse::slice_steps::{slices_of, slice_part}
 #endif
 #import airlight::inverse::channels::{channels_of, all_channels}
+#ifndef PATHS
+#import airlight::inverse::channels::{step_depth, taken_of}
+#endif
 #import airlight::inverse::basis::{triangle_corner, triangle_field, voxel_of_place}
 #import airlight::inverse::fixed_point::{fixed_exponent, fixed_words, pixel_exponent}
 
@@ -145,8 +148,8 @@ fn scatter_steps(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef PATHS
         let sent = value * part.metres;
 #else
-        let passed = channels_of(triangle_field(extinction, part.place)) * part.metres;
-        var weight = exp(-depth) * (1.0 - exp(-passed));
+        let passed = step_depth(channels_of(triangle_field(extinction, part.place)), part.metres);
+        var weight = exp(-depth) * taken_of(passed);
         depth += passed;
 #ifdef ALBEDO
         weight *= channels_of(triangle_field(scattered, part.place));

@@ -21,7 +21,7 @@
 #import airlight::inverse::slice_steps::whole_slice_metres
 #else
 #import airlight::inverse::slice_steps::{slices_of, slice_part}
-#import airlight::inverse::channels::all_channels
+#import airlight::inverse::channels::{all_channels, step_depth, taken_of}
 #import airlight::inverse::basis::triangle_field
 #endif
 
@@ -61,8 +61,8 @@ fn weigh_slices(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var step = slices.x; step < slices.y; step++) {
         let slice = select(slices.y - 1u - (step - slices.x), step, climbs);
         let part = slice_part(view, ray, span, slice);
-        let passed = channels_of(triangle_field(extinction, part.place)) * part.metres;
-        var weight = exp(-depth) * (1.0 - exp(-passed));
+        let passed = step_depth(channels_of(triangle_field(extinction, part.place)), part.metres);
+        var weight = exp(-depth) * taken_of(passed);
 #ifdef ALBEDO
         weight *= channels_of(triangle_field(scattered, part.place));
 #endif
