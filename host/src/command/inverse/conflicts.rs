@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What cannot be meant with `airlight inverse`, before any file is read.
 
-use super::options::{BasisSpelling, MediumFlags, Property, SolveOptions, Wanted};
+use super::error::SolveError;
+use super::options::{BasisSpelling, LightFlags, MediumFlags, Property, SolveOptions, Wanted};
+use super::views::ViewDescription;
 use super::volumes::Source;
 use crate::command::CommandError;
+use crate::command::parse::{LightSpelling, NO_AREA};
 use crate::command::volumes::is_array;
 use glam::Vec3;
 
@@ -29,15 +32,56 @@ pub fn check_medium(flags: &MediumFlags) -> Result<(), CommandError> {
             "--seed",
             "files are as they are: leave it out, or take cloud, clouds, plume or smoke",
         ),
+        (
+            flags.refraction.is_none() && flags.refraction_step.is_some(),
+            "--refraction-step",
+            "rays are straight: leave it out, or give --refraction",
+        ),
     ] {
         if refused {
             return Err(CommandError::misuse(flag, problem));
         }
     }
     number("--extinction-scale", flags.extinction_scale, [0.0, 1e6])?;
-    colour("--ambient", Some(flags.ambient), 1e4)?;
+    check_light(&flags.light)?;
     colour("--emission", constant(&flags.emission), 1e4)?;
     colour("--albedo", constant(&flags.albedo), 1.0)
+}
+
+fn check_light(flags: &LightFlags) -> Result<(), CommandError> {
+    let (lights, values) = (flags.light.len(), flags.radiance.len());
+    for (refused, flag, problem) in [
+        (
+            flags.ambient.is_some() && (flags.environment.is_some() || lights > 0),
+            "--ambient",
+            "light is that of --environment and --light: leave it out",
+        ),
+        (flags.light.iter().any(|light| matches!(light, LightSpelling::Area { .. })), "--light", NO_AREA),
+        (values > 0 && lights == 0, "--radiance", "it is of --light: leave it out"),
+        (
+            values > 1 && lights > 0 && values != lights,
+            "--radiance",
+            "give it once for all lights, or once a light",
+        ),
+    ] {
+        if refused {
+            return Err(CommandError::misuse(flag, problem));
+        }
+    }
+    flags.radiance.iter().try_for_each(|radiance| colour("--radiance", Some(*radiance), 1e4))?;
+    colour("--ambient", flags.ambient, 1e4)
+}
+
+/// Checks that a solve can do with the light of its views.
+///
+/// # Errors
+/// [`SolveError::OwnLight`].
+pub fn check_views(flags: &SolveOptions, views: &[ViewDescription]) -> Result<(), SolveError> {
+    let own = views.iter().find(|view| view.environment.is_some());
+    match own.filter(|_| flags.any(|wanted| wanted == Wanted::Light)) {
+        Some(view) => Err(SolveError::OwnLight(view.name.clone())),
+        None => Ok(()),
+    }
 }
 
 /// Checks what all flags of a solve say.
@@ -47,12 +91,27 @@ pub fn check_medium(flags: &MediumFlags) -> Result<(), CommandError> {
 pub fn check(flags: &SolveOptions) -> Result<(), CommandError> {
     check_medium(&flags.medium)?;
     let extinction = flags.any(|wanted| wanted == Wanted::Extinction);
+    let light = flags.any(|wanted| wanted == Wanted::Light);
+    let of_light = "it is of --for light: leave it out";
     for (refused, flag, problem) in [
         (
             extinction && flags.basis == BasisSpelling::Box,
             "--basis",
             "extinction is read straight between its voxels: leave it out, or solve for emission and albedo alone",
         ),
+        (
+            light && flags.basis == BasisSpelling::Box,
+            "--basis",
+            "light is scattered straight between voxels: leave it out, or solve for light in another run",
+        ),
+        (
+            flags.hull && flags.medium.refraction.is_some(),
+            "--hull",
+            "masks are seen along straight rays and --refraction bends them: leave it out",
+        ),
+        (!light && flags.discs.lights.is_some(), "--lights", of_light),
+        (!light && flags.discs.upper, "--upper", of_light),
+        (!light && flags.discs.light_strategy.is_some(), "--light-strategy", of_light),
         (
             !extinction && flags.medium_radiance.is_some(),
             "--medium-radiance",

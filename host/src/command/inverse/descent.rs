@@ -3,15 +3,53 @@
 
 use super::cancel::Cancel;
 use crate::Gpu;
-use crate::inverse::{InverseError, Solver};
+use crate::inverse::{InverseError, LightSolver, Solver};
+
+/// A solver.
+pub trait Iterated {
+    /// One iteration.
+    fn iterate(&mut self, gpu: &Gpu) -> Result<(), InverseError>;
+    /// What was wrong when each began.
+    fn residuals(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, InverseError>;
+    /// What was found so far: volumes, or coefficients.
+    fn solutions(&self, gpu: &Gpu) -> Result<Vec<Vec<f32>>, InverseError>;
+}
+
+impl Iterated for Solver {
+    fn iterate(&mut self, gpu: &Gpu) -> Result<(), InverseError> {
+        Self::iterate(self, gpu)
+    }
+
+    fn residuals(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, InverseError> {
+        Self::residuals(self, gpu)
+    }
+
+    fn solutions(&self, gpu: &Gpu) -> Result<Vec<Vec<f32>>, InverseError> {
+        Self::solutions(self, gpu)
+    }
+}
+
+impl Iterated for LightSolver {
+    fn iterate(&mut self, gpu: &Gpu) -> Result<(), InverseError> {
+        Self::iterate(self, gpu)
+    }
+
+    fn residuals(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, InverseError> {
+        Self::residuals(self, gpu)
+    }
+
+    fn solutions(&self, gpu: &Gpu) -> Result<Vec<Vec<f32>>, InverseError> {
+        Ok(vec![self.coefficients(gpu)?])
+    }
+}
 
 /// What iterations came to.
 pub struct Descent {
     /// What was wrong when each began: weighed sums of squares by channel.
     pub residuals: Vec<[f32; 3]>,
-    /// The volumes after the last one.
+    /// What was found after the last one.
     pub last: Vec<Vec<f32>>,
-    /// Those of the least residual so far, before the last one, and that residual; none before the first.
+    /// That of the least residual so far, before the last one, and that residual; none before the first.
     pub best: Option<(f64, Vec<Vec<f32>>)>,
 }
 
@@ -21,7 +59,7 @@ pub struct Descent {
 /// [`InverseError`].
 pub fn descend(
     gpu: &Gpu,
-    solver: &mut Solver,
+    solver: &mut impl Iterated,
     iterations: u32,
     cancel: &Cancel,
     mut told: impl FnMut(&[[f32; 3]]),

@@ -38,6 +38,16 @@ pub enum SolveError {
         "--for {0}: no voxel matters: none with extinction lies inside the masks; give other masks or another --volume"
     )]
     NoVoxels(&'static str),
+    /// Nothing that light could change.
+    #[error(
+        "--for light: nothing scatters light: extinction or albedo is 0 everywhere; give another --volume or --albedo"
+    )]
+    NoScattering,
+    /// A view with a light of its own where one light is solved for.
+    #[error(
+        "--for light: view `{0}` has an `environment` of its own, and one light is solved for: leave it out"
+    )]
+    OwnLight(String),
     /// A picture, a volume or what is between them is more than the device holds.
     #[error("{flag}: {what} need {needed} {unit} and the device takes {limit}: {remedy}")]
     TooLarge {
@@ -65,7 +75,7 @@ pub enum SolveError {
 impl From<SolveError> for CommandError {
     fn from(error: SolveError) -> Self {
         match error {
-            SolveError::NoMasks(_) => Self::Misuse(error.to_string()),
+            SolveError::NoMasks(_) | SolveError::OwnLight(_) => Self::Misuse(error.to_string()),
             _ => Self::failure(error),
         }
     }
@@ -92,6 +102,16 @@ impl From<InverseError> for CommandError {
             InverseError::Setting(OutOfRange { name: "greatest optical depth", .. }) => {
                 Self::misuse("--most-depth", error)
             }
+            InverseError::Setting(OutOfRange {
+                name: "step of bent rays" | "number of steps of bent rays",
+                ..
+            }) => Self::misuse("--refraction-step", error),
+            InverseError::Light(_) => Self::misuse("--light", error),
+            InverseError::LightColumns { .. } => Self::failure(format!("--light-strategy: {error}")),
+            InverseError::Memory {
+                name: "light volumes" | "sums of light volumes" | "volumes of scattered light",
+                ..
+            } => Self::failure(format!("--light-resolution: {error}")),
             InverseError::Camera => Self::failure(format!("--views: {error}")),
             InverseError::Memory { .. } => Self::failure(format!("--resolution: {error}")),
             _ => Self::failure(error),

@@ -7,6 +7,10 @@ use clap::{Subcommand, ValueEnum};
 use glam::Vec3;
 use std::path::PathBuf;
 
+mod light;
+
+pub use light::{DiscFlags, LightFlags, StrategySpelling};
+
 /// What is asked for.
 #[derive(clap::Args)]
 pub struct Options {
@@ -59,9 +63,15 @@ pub struct MediumFlags {
     /// Albedo, 0 to 1, likewise. A solve for albedo begins here.
     #[arg(long, value_name = "FILE|A|R,G,B", default_value = "0.8", value_parser = property, allow_hyphen_values = true)]
     pub albedo: Property,
-    /// Linear RGB radiance from all around that an albedo of 1 scatters, one number or R,G,B, 0 to 1e4.
-    #[arg(long, value_name = "A|R,G,B", default_value = "1", value_parser = parse::grey_or_colour, allow_hyphen_values = true)]
-    pub ambient: Vec3,
+    /// Where light comes from.
+    #[command(flatten)]
+    pub light: LightFlags,
+    /// Index of refraction, which bends rays: one number a voxel, 0.01 to 100, in the same box (.nii, .nii.gz, .npy).
+    #[arg(long, value_name = "FILE")]
+    pub refraction: Option<PathBuf>,
+    /// Length of a step of bent rays, metres [default: half the side of a voxel].
+    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
+    pub refraction_step: Option<f32>,
     /// Steps of rays through the volume, 1 to 2048 [default: voxels along its longest side].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2048), allow_hyphen_values = true)]
     pub steps: Option<u32>,
@@ -81,8 +91,8 @@ pub struct SolveOptions {
     /// The volume.
     #[command(flatten)]
     pub medium: MediumFlags,
-    /// What is solved for: emission, albedo, both (emission,albedo) or extinction; given several times, one stage after another.
-    #[arg(long = "for", value_name = "emission,albedo|emission|albedo|extinction", required = true, value_parser = wanted)]
+    /// What is solved for: emission, albedo, both (emission,albedo), extinction or light; given several times, one stage after another.
+    #[arg(long = "for", value_name = "emission,albedo|emission|albedo|extinction|light", required = true, value_parser = wanted)]
     pub wanted: Vec<Wanted>,
     /// Iterations of each stage, 1 to 1024.
     #[arg(long, value_name = "N", default_value = "6", value_parser = clap::value_parser!(u32).range(1..=1024), allow_hyphen_values = true)]
@@ -124,6 +134,9 @@ pub struct SolveOptions {
     /// With --for extinction: greatest optical depth along a ray that a picture may ask for, 0.01 to 80 [default: 6].
     #[arg(long, value_name = "D", value_parser = parse::number, allow_hyphen_values = true)]
     pub most_depth: Option<f32>,
+    /// Light that is solved for.
+    #[command(flatten)]
+    pub discs: DiscFlags,
 }
 
 /// `--channels`.
@@ -196,6 +209,8 @@ pub enum Wanted {
     Both,
     /// Extinction.
     Extinction,
+    /// Light from all around.
+    Light,
 }
 
 impl Wanted {
@@ -206,6 +221,7 @@ impl Wanted {
             Self::Albedo => "albedo",
             Self::Both => "emission,albedo",
             Self::Extinction => "extinction",
+            Self::Light => "light",
         }
     }
 
@@ -226,7 +242,8 @@ fn wanted(text: &str) -> Result<Wanted, String> {
         "albedo" => Ok(Wanted::Albedo),
         "emission,albedo" | "albedo,emission" => Ok(Wanted::Both),
         "extinction" => Ok(Wanted::Extinction),
-        _ => Err(format!("`{text}` is unknown: give emission, albedo, emission,albedo or extinction")),
+        "light" => Ok(Wanted::Light),
+        _ => Err(format!("`{text}` is unknown: give emission, albedo, emission,albedo, extinction or light")),
     }
 }
 

@@ -26,6 +26,7 @@ impl Property {
             Wanted::Albedo => vec![Self::Albedo],
             Wanted::Both => vec![Self::Emission, Self::Albedo],
             Wanted::Extinction => vec![Self::Extinction],
+            Wanted::Light => Vec::new(),
         }
     }
 

@@ -25,15 +25,17 @@ pub fn check_names(
             Background::Picture(path) => Some(path),
             Background::Color(_) => None,
         };
-        [view.target.as_ref(), view.weights.as_ref(), view.mask.as_ref(), view.depth.as_ref(), background]
+        let own = [&view.target, &view.weights, &view.mask, &view.depth, &view.environment];
+        own.into_iter().flatten().chain(background)
     });
-    let pictures = pictures.flatten().map(PathBuf::as_path);
+    let pictures = pictures.map(PathBuf::as_path);
+    let more = [&flags.light.environment, &flags.refraction].into_iter().flatten().map(PathBuf::as_path);
     let read = [flags.volume.as_path(), flags.views.as_path()];
     let replaced = |path: &&Path| {
         let Ok(path) = path.canonicalize() else { return false };
         names.iter().any(|name| path == folder.join(name))
     };
-    match read.into_iter().chain(properties).chain(pictures).find(replaced) {
+    match read.into_iter().chain(properties).chain(more).chain(pictures).find(replaced) {
         Some(path) => Err(SolveError::Replaces(path.to_owned())),
         None => Ok(()),
     }

@@ -3,10 +3,11 @@
 
 use super::conflicts::check_medium;
 use super::fits::Needs;
-use super::light::Illumination;
+use super::light::Lights;
 use super::options::RenderOptions;
 use super::places::check_names;
-use super::studio::{Look, Seen, Shot, Studio};
+use super::refraction::Refraction;
+use super::studio::{Look, Seen, Setting, Shot, Studio};
 use super::views::{read_views, write_views};
 use super::volumes::Matter;
 use crate::command::staging::Staging;
@@ -15,6 +16,7 @@ use crate::inverse::{Basis, Channels};
 use crate::{Gpu, Shaders};
 use glam::Vec3;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Runs the command.
 pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
@@ -32,21 +34,33 @@ pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
     let channels = Channels::Rgb;
     let matter = Matter::new(flags, channels)?;
     let steps = steps(flags.steps, matter.extinction.size);
-    let seen = views.iter().map(|view| Seen::new(view, &matter, steps, channels));
+    let refraction = Refraction::new(flags, &matter)?;
+    let lights = Lights::new(&flags.light, &views, &matter.bounds())?;
+    let seen = views.iter().zip(&lights.of_views);
+    let seen = seen.map(|(view, light)| Seen::new(view, &matter, steps, channels, *light));
     let seen = seen.collect::<Result<Vec<_>, _>>()?;
     bar.inc(1);
 
     bar.set_message("rendering");
     let gpu = pollster::block_on(Gpu::new())?;
-    let known = known(&matter);
+    let known = known(&matter, refraction.as_ref());
     let sizes: Vec<(&str, [u32; 2])> =
         seen.iter().map(|seen| (seen.name(), seen.loaded.description.size)).collect();
     Needs { channels, known: &known, unknown: &[], views: &sizes, steps: false }.check(&gpu.limits)?;
     let shaders = Shaders::builtin();
-    let form = (channels, Basis::Triangle);
-    let studio =
-        Studio::new((&gpu, &shaders), form, matter.place, steps, Illumination::Ambient(flags.ambient))?;
-    let look = Look { extinction: matter.extinction, emission: matter.emission, albedo: matter.albedo };
+    let setting = Setting {
+        place: matter.place,
+        steps,
+        refraction: refraction.as_ref(),
+        light_resolution: flags.light.light_resolution,
+    };
+    let studio = Studio::new((&gpu, &shaders), (channels, Basis::Triangle), &setting)?;
+    let look = Look {
+        extinction: Arc::new(matter.extinction),
+        emission: matter.emission,
+        albedo: matter.albedo,
+        lights: lights.all,
+    };
     let shots: Vec<Shot<'_>> = seen.iter().map(Seen::shot).collect();
     let pictures = studio.pictures(&look, &shots)?;
     bar.inc(1);
@@ -60,7 +74,7 @@ pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
     bar.finish_and_clear();
     for (view, written) in views.iter().zip(&written).filter(|(_, written)| written.clipped > 0) {
         eprintln!(
-            "airlight: warning: view `{}`: {} pixels are brighter than {}.png holds: let `target` name the .exr, or give less --ambient",
+            "airlight: warning: view `{}`: {} pixels are brighter than {}.png holds: let `target` name the .exr, or give less light",
             view.name, written.clipped, view.name
         );
     }
@@ -78,10 +92,15 @@ pub fn steps(asked: Option<u32>, size: [u32; 3]) -> u32 {
 }
 
 /// What of a volume has to fit.
-pub fn known(matter: &Matter) -> [(&'static str, &'static str, [u32; 3]); 3] {
-    [
+pub fn known(
+    matter: &Matter,
+    refraction: Option<&Refraction>,
+) -> Vec<(&'static str, &'static str, [u32; 3])> {
+    let mut known = vec![
         ("--volume", "extinction", matter.extinction.size),
         ("--emission", "emission", matter.emission.size),
         ("--albedo", "albedo", matter.albedo.size),
-    ]
+    ];
+    known.extend(refraction.map(|own| ("--refraction", "index of refraction", own.index.size)));
+    known
 }

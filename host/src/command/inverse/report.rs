@@ -2,6 +2,7 @@
 //! How far pictures are from what is wanted, and `report.json`.
 
 use super::descent::sum;
+use super::discs::LitDiscs;
 use super::parts::Property;
 use crate::data::srgb_from_linear;
 use crate::inverse::LogCounts;
@@ -60,6 +61,8 @@ pub struct StageReport {
     pub residuals: Vec<[f32; 3]>,
     /// Volumes, their voxels, and how many of them were solved for.
     pub volumes: Vec<(Property, [u32; 3], usize)>,
+    /// Light that was solved for.
+    pub light: Option<LitDiscs>,
     /// Views.
     pub views: Vec<ViewReport>,
     /// How long it took.
@@ -78,7 +81,7 @@ impl StageReport {
             (property.name().to_owned(), json!({ "voxels": size, "solved": solved }))
         };
         let volumes: serde_json::Map<String, Value> = self.volumes.iter().map(volume).collect();
-        json!({
+        let mut report = json!({
             "for": self.wanted,
             "iterations": self.iterations,
             "residuals": self.totals(),
@@ -86,7 +89,11 @@ impl StageReport {
             "volumes": volumes,
             "views": self.views.iter().map(ViewReport::json).collect::<Vec<_>>(),
             "seconds": self.seconds,
-        })
+        });
+        if let Some(light) = &self.light {
+            report["light"] = light.json();
+        }
+        report
     }
 
     /// For the person at the keyboard, a line each.

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! `airlight inverse solve`: the volume that looks as its views were painted.
+//! `airlight inverse solve`: the volume, or the light, that looks as its views were painted.
 
 use super::between::between;
 use super::cancel::Cancel;
-use super::conflicts::check;
+use super::conflicts::{check, check_views};
 use super::error::SolveError;
 use super::field::reduced;
 use super::fits::Needs;
-use super::light::Illumination;
+use super::light::Lights;
 use super::options::{SolveOptions, Wanted};
 use super::parts::Property;
 use super::places::check_names;
+use super::refraction::Refraction;
 use super::render::{known, steps};
 use super::report::StageReport;
 use super::stage::Stages;
-use super::studio::{Look, Seen, Shot, Studio};
+use super::studio::{Look, Seen, Setting, Shot, Studio};
 use super::views::{ViewDescription, read_views};
 use super::volumes::Matter;
 use crate::command::staging::Staging;
@@ -23,10 +24,14 @@ use crate::data::srgb_from_linear;
 use crate::formats::{WriteError, write_exr, write_png, write_whole};
 use crate::inverse::{Basis, Channels};
 use crate::{Gpu, Shaders};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
+
+/// The map of light that was solved for.
+const ENVIRONMENT: &str = "environment.exr";
 
 /// Runs the command.
 pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
@@ -37,6 +42,7 @@ pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
     if options.hull && views.iter().all(|view| view.mask.is_none()) {
         return Err(SolveError::NoMasks(flags.views.clone()).into());
     }
+    check_views(options, &views)?;
     let names = names(options, &views);
     check_names(flags, &views, &names)?;
     // Said now, and not after an hour.
@@ -48,7 +54,10 @@ pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
     bar.set_message("reading the volume and the views");
     let matter = Matter::new(flags, channels)?;
     let steps = steps(flags.steps, matter.extinction.size);
-    let seen = views.iter().map(|view| Seen::new(view, &matter, steps, channels));
+    let refraction = Refraction::new(flags, &matter)?;
+    let lights = Lights::new(&flags.light, &views, &matter.bounds())?;
+    let seen = views.iter().zip(&lights.of_views);
+    let seen = seen.map(|(view, light)| Seen::new(view, &matter, steps, channels, *light));
     let seen = seen.collect::<Result<Vec<_>, _>>()?;
     for seen in &seen {
         seen.loaded.required_target()?;
@@ -56,12 +65,22 @@ pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
     bar.inc(1);
 
     let gpu = pollster::block_on(Gpu::new())?;
-    fits(options, &gpu, &matter, &seen)?;
+    fits(options, &gpu, &known(&matter, refraction.as_ref()), matter.place, &seen)?;
     let basis = Basis::from(options.basis);
     let (shaders, place) = (Shaders::builtin(), matter.place);
-    let studio =
-        Studio::new((&gpu, &shaders), (channels, basis), place, steps, Illumination::Ambient(flags.ambient))?;
-    let mut look = Look { extinction: matter.extinction, emission: matter.emission, albedo: matter.albedo };
+    let setting = Setting {
+        place,
+        steps,
+        refraction: refraction.as_ref(),
+        light_resolution: flags.light.light_resolution,
+    };
+    let studio = Studio::new((&gpu, &shaders), (channels, basis), &setting)?;
+    let mut look = Look {
+        extinction: Arc::new(matter.extinction),
+        emission: matter.emission,
+        albedo: matter.albedo,
+        lights: lights.all,
+    };
     let medium = reduced(options.medium_radiance.unwrap_or(Vec3::ZERO), channels);
     let stages = Stages { studio: &studio, flags: options, seen: &seen, medium, cancel: &cancel, bar: &bar };
     let mut done: Vec<(Wanted, StageReport)> = Vec::new();
@@ -82,7 +101,7 @@ pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
     let said = |error: WriteError| CommandError::failure(format!("--out: {error}"));
     let mut files: Vec<String> = Vec::new();
     for (property, field) in [
-        (Property::Extinction, &look.extinction),
+        (Property::Extinction, look.extinction.as_ref()),
         (Property::Emission, &look.emission),
         (Property::Albedo, &look.albedo),
     ] {
@@ -90,6 +109,12 @@ pub fn run(options: &SolveOptions, quiet: bool) -> Result<(), CommandError> {
             field.write(&staging.path(""), property.name(), place, channels)?;
             files.extend(["nii.gz", "npy"].map(|ending| format!("{}.{ending}", property.name())));
         }
+    }
+    if let Some(discs) = look.found() {
+        let map = discs.environment().map_err(CommandError::failure)?;
+        let values: Vec<f32> = map.texels().iter().flat_map(|texel| texel.to_array()).collect();
+        write_exr(staging.path(ENVIRONMENT), map.size()[0], map.size()[1], &values).map_err(said)?;
+        files.push(ENVIRONMENT.to_owned());
     }
     for (seen, picture) in seen.iter().zip(stages.pictures(&shown)?) {
         let name = format!("solved_{}", seen.name());
@@ -136,6 +161,7 @@ fn names(options: &SolveOptions, views: &[ViewDescription]) -> Vec<PathBuf> {
     for property in options.wanted.iter().flat_map(|wanted| Property::of(*wanted)) {
         names.extend(["nii.gz", "npy"].map(|ending| format!("{}.{ending}", property.name())));
     }
+    names.extend(options.any(|wanted| wanted == Wanted::Light).then(|| ENVIRONMENT.to_owned()));
     names.extend(
         views.iter().flat_map(|view| ["png", "exr"].map(|ending| format!("solved_{}.{ending}", view.name))),
     );
@@ -147,22 +173,30 @@ fn between_name(first: &ViewDescription, second: &ViewDescription) -> String {
     format!("between_{}_{}.png", first.name, second.name)
 }
 
-fn fits(options: &SolveOptions, gpu: &Gpu, matter: &Matter, seen: &[Seen]) -> Result<(), SolveError> {
-    let volume = matter.extinction.size;
+/// `known`: volumes that are read, the extinction first.
+fn fits(
+    options: &SolveOptions,
+    gpu: &Gpu,
+    known: &[(&'static str, &'static str, [u32; 3])],
+    place: Mat4,
+    seen: &[Seen],
+) -> Result<(), SolveError> {
+    let volume = known.first().map_or([1; 3], |(_, _, size)| *size);
     let properties = options.wanted.iter().flat_map(|wanted| Property::of(*wanted));
-    let unknown: Vec<_> = properties.map(|property| property.size(options, matter.place, volume)).collect();
+    let unknown: Vec<_> = properties.map(|property| property.size(options, place, volume)).collect();
     let views: Vec<_> = seen.iter().map(|seen| (seen.name(), seen.loaded.description.size)).collect();
+    let straight = options.medium.refraction.is_none();
     let needs = Needs {
         channels: options.channels.into(),
-        known: &known(matter),
+        known,
         unknown: &unknown,
         views: &views,
-        steps: options.any(|wanted| wanted != Wanted::Extinction),
+        steps: straight && options.any(|wanted| wanted != Wanted::Extinction),
     };
     needs.check(&gpu.limits)
 }
 
-/// Pictures between successive views, before the mean of what lies behind both.
+/// Pictures between successive views, in the light of the first and before the mean of what lies behind both.
 fn write_between(
     studio: &Studio<'_>,
     shown: &Look,
@@ -175,7 +209,8 @@ fn write_between(
             cameras.push((studio.rays(&camera, shown)?, pair));
         }
     }
-    let shots: Vec<Shot<'_>> = cameras.iter().map(|(slices, _)| Shot { slices, depths: None }).collect();
+    let shots: Vec<Shot<'_>> =
+        cameras.iter().map(|(slices, pair)| Shot { slices, depths: None, light: pair[0].light }).collect();
     let mean = |seen: &Seen| seen.background.iter().sum::<Vec3>() / seen.background.len().max(1) as f32;
     for (picture, (_, pair)) in studio.pictures(shown, &shots)?.iter().zip(&cameras) {
         let [one, other] = [&pair[0].loaded.description, &pair[1].loaded.description];

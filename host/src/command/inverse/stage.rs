@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! One stage of a solve: emission and albedo, or extinction, for one light.
+//! One stage of a solve: emission and albedo, extinction, or light.
+
+mod light;
 
 use super::cancel::Cancel;
-use super::descent::{Descent, descend, sum};
+use super::descent::{Descent, Iterated, descend, sum};
 use super::error::SolveError;
 use super::field::{Field, colours, numbers};
+use super::light::Illumination;
 use super::options::{SolveOptions, Wanted};
 use super::parts::{self, Property};
 use super::report::{Distance, StageReport, ViewReport};
@@ -57,8 +60,8 @@ impl Stages<'_> {
         if wanted != Wanted::Extinction {
             return look.clone();
         }
-        let extinction = look.extinction.clone();
-        Look { extinction, emission: Field::constant(self.medium), albedo: Field::constant(Vec3::ZERO) }
+        let [emission, albedo] = [self.medium, Vec3::ZERO].map(Field::constant);
+        Look { emission, albedo, ..in_the_dark(look) }
     }
 
     /// Pictures of all views.
@@ -79,6 +82,7 @@ impl Stages<'_> {
         let before = self.distances(&self.pictures(&self.shown(wanted, look))?);
         let left = match wanted {
             Wanted::Extinction => self.extinction(look)?,
+            Wanted::Light => self.light(look)?,
             _ => self.radiance(wanted, look)?,
         };
         *look = left.look;
@@ -93,6 +97,7 @@ impl Stages<'_> {
             iterations: left.residuals.len().saturating_sub(1) as u32,
             residuals: left.residuals,
             volumes: left.volumes,
+            light: look.found().filter(|_| wanted == Wanted::Light).cloned(),
             views: views.collect(),
             seconds: begun.elapsed().as_secs_f64(),
         })
@@ -136,7 +141,6 @@ impl Stages<'_> {
             _ => Solved::Both,
         };
         let projector = studio.projector(kind, channels)?;
-        let medium = Arc::new(studio.medium(&known)?);
         let mut targets = Vec::with_capacity(seen.len());
         for (seen, picture) in seen.iter().zip(self.pictures(&known)?) {
             let shot = seen.shot();
@@ -145,7 +149,7 @@ impl Stages<'_> {
                     .map(|colours| numbers(colours, channels));
             targets.push(Target {
                 view: projector.view(studio.gpu, shot.slices, shot.depths)?,
-                medium: Arc::clone(&medium),
+                medium: studio.medium(&known, seen.light)?,
                 wanted: radiance_targets(&target, &background, &through, &radiance)?,
                 weights: seen.weights.clone(),
             });
@@ -168,15 +172,17 @@ impl Stages<'_> {
             look
         };
         let counts = vec![None; seen.len()];
-        let (look, residuals) = self.choose(&descent, look, with, |look| {
-            let pictures = self.pictures(look)?;
-            let wrong = seen
-                .iter()
-                .zip(&pictures)
-                .map(|(seen, picture)| squares(&picture.over(&seen.background), &seen.target, &seen.weights));
-            Ok(wrong.fold([0.0; 3], |all, own| [0, 1, 2].map(|channel| all[channel] + own[channel])))
-        })?;
+        let (look, residuals) = self.choose(&descent, look, with, |look| self.squares(look))?;
         Ok(Left { look, residuals: only(residuals, channels), volumes, counts })
+    }
+
+    /// What is wrong in all pictures: weighed sums of squares by channel.
+    fn squares(&self, look: &Look) -> Result<[f64; 3], InverseError> {
+        let pictures = self.pictures(look)?;
+        let wrong = self.seen.iter().zip(&pictures);
+        let wrong = wrong
+            .map(|(seen, picture)| squares(&picture.over(&seen.background), &seen.target, &seen.weights));
+        Ok(wrong.fold([0.0; 3], |all, own| [0, 1, 2].map(|channel| all[channel] + own[channel])))
     }
 
     /// Extinction: each channel by itself, since each pixel counts otherwise in each.
@@ -198,7 +204,7 @@ impl Stages<'_> {
         let counts = (0..seen.len()).map(|view| Some(together(&mut rows.iter().map(|rows| &rows[view]))));
         let counts = counts.collect();
 
-        let (mut found, mut residuals) = (start.clone(), vec![Vec::new(); count]);
+        let (mut found, mut residuals) = (Arc::new(start.clone()), vec![Vec::new(); count]);
         let nothing = Field::constant(Vec3::ZERO);
         for (channel, rows) in rows.iter().enumerate() {
             // Pictures that say nothing of a channel leave it as it is.
@@ -207,7 +213,11 @@ impl Stages<'_> {
             }
             let projector = studio.projector(Solved::Extinction, Channels::One)?;
             let [extinction, scattered] = [(); 2].map(|()| nothing.texture(studio.gpu, Channels::One));
-            let medium = Arc::new(Medium { extinction: extinction?, scattered: scattered?, index: None });
+            let medium = Arc::new(Medium {
+                extinction: extinction?,
+                scattered: scattered?,
+                index: studio.index.clone(),
+            });
             let mut targets = Vec::with_capacity(seen.len());
             for (seen, row) in seen.iter().zip(rows) {
                 targets.push(Target {
@@ -223,7 +233,7 @@ impl Stages<'_> {
             let mut solver = Solver::new(studio.gpu, studio.shaders, projector, targets, &[unknown])?;
             let descent = self.descend(Wanted::Extinction, &mut solver)?;
             let with = |solutions: &[Vec<f32>]| {
-                let mut found = found.clone();
+                let mut found = Field::clone(&found);
                 let numbers = solutions.first().into_iter().flatten();
                 for (value, number) in found.values.iter_mut().zip(numbers) {
                     match studio.channels {
@@ -231,7 +241,7 @@ impl Stages<'_> {
                         Channels::Rgb => value[channel] = *number,
                     }
                 }
-                Look { extinction: found, ..look.clone() }
+                Look { extinction: Arc::new(found), ..look.clone() }
             };
             let (look, own) = self.choose(&descent, look, with, |look| {
                 let pictures = self.pictures(&self.shown(Wanted::Extinction, look))?;
@@ -267,7 +277,7 @@ impl Stages<'_> {
         self.seen.iter().map(row).collect()
     }
 
-    fn descend(&self, wanted: Wanted, solver: &mut Solver) -> Result<Descent, InverseError> {
+    fn descend(&self, wanted: Wanted, solver: &mut impl Iterated) -> Result<Descent, InverseError> {
         let iterations = self.flags.iterations;
         descend(self.studio.gpu, solver, iterations, self.cancel, |residuals| {
             let (first, last) = (residuals.first().map_or(0.0, sum), residuals.last().map_or(0.0, sum));
@@ -295,6 +305,12 @@ impl Stages<'_> {
         let better = self.cancel.asked() && *least < own.iter().sum();
         Ok((if better { with(best) } else { last }, residuals))
     }
+}
+
+/// The same without any light.
+fn in_the_dark(look: &Look) -> Look {
+    let dark = Illumination::dark();
+    Look { lights: vec![dark; look.lights.len()], ..look.clone() }
 }
 
 fn volumes(

@@ -14,6 +14,8 @@
 //! - `mask`: where the medium may be seen, for its visual hull: half and more is inside; the same formats.
 //! - `depth`: metres along each ray to the surface that ends it, infinity without one: .npy [HEIGHT, WIDTH], or the red of an .exr.
 //! - `background`: radiance behind the medium: `[R, G, B]` (linear), `"#rrggbb"` (sRGB) or a picture like `target`; black without it.
+//! - `environment`: the map of surroundings in whose light the view was seen, latitude-longitude, .png (sRGB), .exr or .hdr (linear radiance):
+//!   the only light of that view. The volume is the same in all views, so that those of several lightings are solved for together.
 //! - `time`: the frame that the view shows, a number.
 
 mod error;
@@ -70,6 +72,8 @@ pub struct ViewDescription {
     pub depth: Option<PathBuf>,
     /// What lies behind.
     pub background: Background,
+    /// The surroundings that light the volume, if not those of all views.
+    pub environment: Option<PathBuf>,
 }
 
 impl ViewDescription {
@@ -108,6 +112,7 @@ struct FileView {
     mask: Option<PathBuf>,
     depth: Option<PathBuf>,
     background: Option<FileBackground>,
+    environment: Option<PathBuf>,
     camera: FileCamera,
 }
 
@@ -171,7 +176,7 @@ fn impossible(file: &Path, view: &str, key: &'static str, reason: impl Into<Stri
 }
 
 fn describe(path: &Path, of: FileView) -> Result<ViewDescription, ViewsError> {
-    let FileView { name, size, time, target, weights, mask, depth, background, camera } = of;
+    let FileView { name, size, time, target, weights, mask, depth, background, environment, camera } = of;
     let wrong = |key, reason: String| impossible(path, &name, key, reason);
     let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
     if name.is_empty() || !name.chars().all(plain) {
@@ -214,6 +219,7 @@ fn describe(path: &Path, of: FileView) -> Result<ViewDescription, ViewsError> {
         mask: beside(mask),
         depth: beside(depth),
         background,
+        environment: beside(environment),
         name,
     };
     described.camera()?;

@@ -107,7 +107,7 @@ impl Matter {
 }
 
 /// Metres of the edges of a box.
-fn edges(place: Mat4) -> [f32; 3] {
+pub fn edges(place: Mat4) -> [f32; 3] {
     [place.x_axis, place.y_axis, place.z_axis].map(|edge| edge.truncate().length())
 }
 
@@ -144,7 +144,10 @@ fn field(volumes: &[Volume]) -> Field {
 }
 
 /// A property from a file, which has to lie where the volume does if it says where.
-fn placed(flag: &str, path: &PathBuf, place: Mat4) -> Result<Field, CommandError> {
+///
+/// # Errors
+/// Misuse: an unknown name. A failure: a file, or one that lies elsewhere.
+pub fn placed(flag: &str, path: &PathBuf, place: Mat4) -> Result<Field, CommandError> {
     let known = "a file that ends in .nii, .nii.gz or .npy";
     let volumes = load_channels(path, 1.0).map_err(|error| medium_error(flag, error, known))?;
     if !crate::command::volumes::is_array(path) {

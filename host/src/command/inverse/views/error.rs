@@ -2,6 +2,7 @@
 //! Why views cannot be read, loaded or written.
 
 use crate::core::CameraError;
+use crate::data::EnvironmentError;
 use crate::formats::{ArrayError, PictureError, TomlFileError, WriteError};
 use std::path::PathBuf;
 
@@ -32,6 +33,14 @@ pub enum ViewsError {
         view: String,
         /// What is wrong.
         source: CameraError,
+    },
+    /// The surroundings of a view.
+    #[error("view `{view}`: environment: {source}")]
+    Environment {
+        /// Name of the view.
+        view: String,
+        /// What is wrong.
+        source: EnvironmentError,
     },
     /// A picture cannot be read.
     #[error("view `{view}`: {key}: {source}")]

@@ -31,6 +31,7 @@ weights = 'w.exr'
 mask = '/m.png'
 depth = 'd.npy'
 background = 'sky.exr'
+environment = 'dusk.exr'
 [view.camera]
 eye = [-4, 0, 0]
 target = [1, 0, 0]
@@ -54,6 +55,7 @@ far = 9
     assert_eq!(side.mask.as_deref(), Some(Path::new("/m.png")));
     assert_eq!(side.depth.as_deref(), Some(Path::new("a/d.npy")));
     assert_eq!(side.background, Background::Picture("a/sky.exr".into()));
+    assert_eq!((side.environment.as_deref(), &front.environment), (Some(Path::new("a/dusk.exr")), &None));
     // Up is +z: a point above the target in z is high in the picture.
     let above = side.camera().unwrap().clip_from_world.project_point3(Vec3::new(1.0, 0.0, 1.5));
     assert!((above.y - 1.0).abs() < 1e-5, "{above}");

@@ -88,6 +88,7 @@ fn file_view(of: &ViewDescription) -> Result<FileView, ViewsError> {
             Background::Color(color) => FileBackground::Linear(color.to_array()),
             Background::Picture(path) => FileBackground::Text(absolute(path)?.display().to_string()),
         }),
+        environment: elsewhere(&of.environment)?,
         camera: FileCamera {
             eye: of.view.eye().to_array(),
             target: of.view.target().to_array(),
