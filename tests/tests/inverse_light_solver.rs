@@ -95,6 +95,9 @@ fn cameras() -> Vec<(ReferenceCamera, Camera)> {
     eyes.into_iter().map(camera).collect()
 }
 
+/// Pictures that are wanted of each view, and weights of their pixels.
+type Wanted<'a> = (&'a [Vec<f32>], &'a [Vec<f32>]);
+
 /// A medium, and what lights make it scatter, as the host and as the reference have them.
 struct Case {
     channels: Channels,
@@ -144,12 +147,7 @@ impl Case {
     }
 
     /// A solver for pictures that are wanted; black ones and even weights where there are none.
-    fn solver(
-        &self,
-        strategy: LightStrategy,
-        wanted: Option<(&[Vec<f32>], &[Vec<f32>])>,
-        smallness: f32,
-    ) -> LightSolver {
+    fn solver(&self, strategy: LightStrategy, wanted: Option<Wanted<'_>>, smallness: f32) -> LightSolver {
         let form = ProjectorForm::new(Solved::Albedo, self.channels);
         let projector = Projector::new(gpu(), shaders(), form).unwrap();
         let medium = Arc::new(Medium {

@@ -48,7 +48,7 @@ pub struct Projector {
 
 /// The transpose.
 enum Back {
-    Collect(Collector),
+    Collect(Box<Collector>),
     Scatter(Scatterer),
 }
 
@@ -93,7 +93,7 @@ impl Projector {
         ];
         let back = match form.transpose {
             Transpose::Collect if form.refraction.is_none() => {
-                Back::Collect(Collector::new(gpu, shaders, form)?)
+                Back::Collect(Box::new(Collector::new(gpu, shaders, form)?))
             }
             _ => Back::Scatter(Scatterer::new(gpu, shaders, form)?),
         };
