@@ -92,9 +92,8 @@ fn clear_air_scatters_what_lights_send() {
     let sphere = 4.0 * std::f32::consts::PI;
     let usual = Vec3::new(12.0, 10.5, 8.4);
     for (flags, expected) in [
-        ("--environment even.exr", Vec3::new(0.7, 0.2, 1.5)),
         ("--environment even.exr --environment-lights 3", Vec3::new(0.7, 0.2, 1.5)),
-        ("--environment south.exr", Vec3::splat(1.5)),
+        ("--environment south.exr --environment-lights 12", Vec3::splat(1.5)),
         ("--light directional:20,50", usual / sphere),
         ("--light directional:20,50 --radiance 3", Vec3::splat(3.0) / sphere),
         (
@@ -105,7 +104,10 @@ fn clear_air_scatters_what_lights_send() {
             "--light directional:20,50 --light directional:0,0 --radiance 1,2,3 --radiance 5,0,0",
             Vec3::new(6.0, 2.0, 3.0) / sphere,
         ),
-        ("--environment even.exr --light directional:20,50", Vec3::new(0.7, 0.2, 1.5) + usual / sphere),
+        (
+            "--environment even.exr --light directional:20,50 --environment-lights 3",
+            Vec3::new(0.7, 0.2, 1.5) + usual / sphere,
+        ),
         ("--light directional:20,50 --light-resolution 2", usual / sphere),
     ] {
         let found = scattered(flags);
@@ -125,7 +127,9 @@ fn light_is_found_and_then_the_volume() {
     let at = folder.path();
     let albedo = "--albedo 0.9,0.8,0.7";
     run(at, &format!("render {BALL} {albedo} --views plain.toml {LIGHTS} --out lit"));
+    // Coarse, so that it is fast.
     let solve = |flags: &str, out: &str| {
+        let flags = format!("{flags} --light-resolution 14");
         println!("{}", run(at, &format!("solve {BALL} {albedo} --views lit/views.toml --out {out} {flags}")));
         report(&at.join(out))
     };
@@ -134,6 +138,10 @@ fn light_is_found_and_then_the_volume() {
     let [before, after] = ["psnr_before", "psnr_after"].map(|key| of_views(light, key));
     assert!(before.iter().all(|psnr| *psnr < 20.0), "{before:?}");
     assert!(least(&after) >= 30.0, "{after:?}");
+    // What is kept is the best of all iterations.
+    let residuals: Vec<f64> =
+        light["residuals"].as_array().unwrap().iter().map(|residual| residual.as_f64().unwrap()).collect();
+    assert!(residuals.len() == 7 && residuals[6] < 1.001 * least(&residuals), "{residuals:?}");
     // The same light goes on (thesis, Fig. 7.11).
     assert_eq!(of_views(more, "psnr_before"), after);
     let then = of_views(more, "psnr_after");
@@ -146,13 +154,18 @@ fn light_is_found_and_then_the_volume() {
     };
     let discs = found(&both);
     assert_eq!(discs.len(), 32);
-    // The brightest red disc is nearest to the red light, and so is blue.
-    for (channel, azimuth, elevation) in [(0, 30.0_f32, 40.0_f32), (2, -100.0, 10.0)] {
-        let [azimuth, elevation] = [azimuth, elevation].map(f32::to_radians);
-        let towards =
-            Vec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
-        let most = discs.iter().max_by(|a, b| a.1[channel].total_cmp(&b.1[channel])).unwrap();
-        assert!(most.0.dot(towards) > 0.8, "{most:?} {towards}");
+    // Light comes from where it came, each colour from where most of it did.
+    let [one, other] = [(30.0_f32, 40.0_f32), (-100.0, 10.0)].map(|(azimuth, elevation)| {
+        let (azimuth, elevation) = (azimuth.to_radians(), elevation.to_radians());
+        Vec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos())
+    });
+    for (channel, from) in
+        [(0, 8.0 * one + 2.0 * other), (1, 5.0 * one + 4.0 * other), (2, 2.0 * one + 9.0 * other)]
+    {
+        let mean: Vec3 = discs.iter().map(|(towards, own)| own[channel] * *towards).sum();
+        let along = mean.normalize().dot(from.normalize());
+        println!("channel {channel}: {:.1} degrees off", along.min(1.0).acos().to_degrees());
+        assert!(along > 0.9, "{mean} {from}");
     }
     // The map of them makes the same pictures.
     let map = load_environment(at.join("both/environment.exr")).unwrap();
@@ -160,7 +173,9 @@ fn light_is_found_and_then_the_volume() {
     let alone = solve("--for light --lights 32 --light-strategy stored", "light");
     run(
         at,
-        &format!("render {BALL} {albedo} --views plain.toml --environment light/environment.exr --out again"),
+        &format!(
+            "render {BALL} {albedo} --views plain.toml --environment light/environment.exr --environment-lights 40 --light-resolution 14 --out again"
+        ),
     );
     for name in ["v0", "v3"] {
         let [again, solved, wanted] =
@@ -198,23 +213,24 @@ fn an_index_of_refraction_bends_rays_in_pictures_and_solves() {
     let step = apart(&render("--refraction lens.npy --refraction-step 0.02", "fine"), &bent);
     println!("even {even:.5}, bent {:.5}, shorter steps {step:.5}", apart(&bent, &straight));
     assert!(even < 0.002 && step < 0.01 && step > 1e-6, "{even} {step}");
-    assert!(apart(&bent, &straight) > 0.05);
+    assert!(apart(&bent, &straight) > 0.03);
 
     let solve = |flags: &str| {
-        let line = "--emission glow.npy --views bent/views.toml --light directional:30,40 --laplacian 1e-4 --out out";
+        let line = "--emission glow.npy --views bent/views.toml --laplacian 1e-4 --channels one --out out";
         println!("{}", run(at, &format!("solve {BALL} {line} {flags}")));
         of_views(&report(&at.join("out"))["stages"][0], "psnr_after")
     };
-    let with = solve("--for albedo --refraction lens.npy");
-    let without = solve("--for albedo");
+    let with = solve("--for albedo --refraction lens.npy --iterations 3 --light directional:30,40");
+    let without = solve("--for albedo --iterations 3 --light directional:30,40");
     assert!(least(&with) > 40.0 && least(&without) < least(&with) - 6.0, "{with:?} {without:?}");
-    let lit = solve("--for light --albedo paint.npy --refraction lens.npy --lights 16 --channels one");
-    assert!(least(&lit) > 28.0, "{lit:?}");
+    let line = "--for light --albedo paint.npy --lights 16 --iterations 4 --light-resolution 14";
+    let lit = solve(&format!("{line} --refraction lens.npy"));
+    assert!(least(&lit) > 29.0, "{lit:?}");
     // What is seen through it: extinction from nothing, before white.
     std::fs::write(at.join("white.toml"), views("background = [1, 1, 1]")).unwrap();
     let line = "--albedo 0 --views white.toml --refraction lens.npy --out through";
     run(at, &format!("render --volume ball.npy --extinction-scale 1 {line}"));
-    let line = "--volume ball.npy --extinction-scale 0 --for extinction --laplacian 1e-4 --channels one --iterations 12 --out out";
+    let line = "--volume ball.npy --extinction-scale 0 --for extinction --laplacian 1e-4 --channels one --iterations 6 --out out";
     println!("{}", run(at, &format!("solve {line} --views through/views.toml --refraction lens.npy")));
     let found = of_views(&report(&at.join("out"))["stages"][0], "psnr_after");
     assert!(least(&found) > 35.0, "{found:?}");
@@ -241,13 +257,15 @@ fn one_volume_is_found_from_views_of_several_lightings() {
         EYES.iter().enumerate().flat_map(both).collect::<String>()
     };
     std::fs::write(at.join("v.toml"), of("morning", "evening")).unwrap();
-    let lights = "--environment-lights 16";
+    let lights = "--environment-lights 6";
     run(at, &format!("render {BALL} --albedo paint.npy --views v.toml --out seen {lights}"));
     let [morning, evening] = ["m0", "e0"].map(|name| radiance(&at.join(format!("seen/{name}.exr"))));
-    assert!(apart(&morning, &evening) > 0.1);
+    println!("lightings {:.4} apart", apart(&morning, &evening));
+    assert!(apart(&morning, &evening) > 0.02);
     let solve = |views: &str| {
-        let line =
-            format!("solve {BALL} --views seen/{views} --for albedo --laplacian 1e-4 --out out {lights}");
+        let line = format!(
+            "solve {BALL} --views seen/{views} --for albedo --laplacian 1e-4 --iterations 4 --out out {lights}"
+        );
         println!("{}", run(at, &line));
         let found = of_views(&report(&at.join("out"))["stages"][0], "psnr_after");
         (least(&found), read(&at.join("out/albedo.npy")).1)

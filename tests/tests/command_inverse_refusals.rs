@@ -64,7 +64,7 @@ fn flags_that_cannot_be_meant_are_refused() {
     };
     solve(
         "--for light,volume",
-        &["--for", "`light,volume`", "emission, albedo, emission,albedo or extinction"],
+        &["--for", "`light,volume`", "emission, albedo, emission,albedo, extinction or light"],
     );
     solve("--for emission,emission", &["--for", "`emission,emission`"]);
     for count in ["0", "1025", "-1"] {
@@ -87,6 +87,73 @@ fn flags_that_cannot_be_meant_are_refused() {
     solve("--for extinction --most-depth 0", &["--most-depth", "0.01 to 80"]);
     solve("--for albedo --channels two", &["--channels", "two"]);
     solve("--for albedo --hull", &["--hull", "v.toml", "mask"]);
+}
+
+#[test]
+fn light_and_refraction_that_cannot_be_meant_are_refused() {
+    let folder = prepared();
+    let at = folder.path();
+    image::Rgb32FImage::from_pixel(4, 2, image::Rgb([1.0, -1.0, 0.5])).save(at.join("negative.exr")).unwrap();
+    volume(&at.join("zero.npy"), |[x, _, _]| [if x < 0.0 { 0.0 } else { 1.5 }]);
+    volume(&at.join("colours.npy"), |_| [1.0, 1.1, 1.2]);
+    let render = |flags: &str, code: i32, parts: &[&str]| {
+        refused(at, &format!("render --volume box.npy --views v.toml --out out {flags}"), code, parts);
+    };
+    render("--light sun", 2, &["--light", "`sun`", "directional:135,40"]);
+    render("--light area:0,0,3", 2, &["--light", "soft shadows", "directional, spot or point"]);
+    render("--light directional:0,91", 2, &["--light", "91", "-90 to 90"]);
+    render("--light point:1,2,3 --ambient 1", 2, &["--ambient", "--light: leave it out"]);
+    render("--environment grey.png --ambient 1", 2, &["--ambient", "--environment"]);
+    render("--radiance 3", 2, &["--radiance", "leave it out"]);
+    render("--light point:1,2,3 --radiance -3", 2, &["--radiance", "0 to 10000"]);
+    render("--light point:1,2,3 --radiance 1 --radiance 2", 2, &["--radiance", "once a light"]);
+    render("--environment none.exr", 1, &["--environment", "none.exr", "no such file"]);
+    render("--environment negative.exr", 1, &["--environment", "negative.exr", "negative", "repair"]);
+    for count in ["0", "4097"] {
+        render(&format!("--environment-lights {count}"), 2, &["--environment-lights", count]);
+    }
+    render("--light-resolution 0", 2, &["--light-resolution", "0"]);
+    render("--refraction-step 0.1", 2, &["--refraction-step", "give --refraction"]);
+    render("--refraction box.npy --refraction-step 0", 2, &["--refraction-step", "0"]);
+    render("--refraction box.npy --refraction-step 1e-5", 2, &["--refraction-step", "longer steps"]);
+    render("--refraction none.npy", 1, &["--refraction", "none.npy", "check the path"]);
+    render("--refraction box.txt", 2, &["--refraction", "`box.txt`", ".npy"]);
+    render("--refraction zero.npy", 1, &["--refraction", "zero.npy", "6912 voxels", "0.01 to 100"]);
+    render("--refraction colours.npy", 1, &["--refraction", "colours.npy", "one number a voxel"]);
+    let solve = |flags: &str, code: i32, parts: &[&str]| {
+        refused(at, &format!("solve --volume box.npy --views v.toml --out out {flags}"), code, parts);
+    };
+    for flag in ["--lights 32", "--upper", "--light-strategy stored"] {
+        let name = words(flag)[0];
+        solve(&format!("--for albedo {flag}"), 2, &[name, "--for light"]);
+    }
+    for count in ["15", "257"] {
+        solve(&format!("--for light --lights {count}"), 2, &["--lights", count]);
+    }
+    solve("--for light --light-strategy columns", 2, &["--light-strategy", "columns"]);
+    solve("--for light --basis box", 2, &["--basis", "straight"]);
+    solve("--for albedo --refraction box.npy --hull", 2, &["--hull", "--refraction"]);
+    solve("--for light --albedo 0", 1, &["--for light", "nothing scatters", "--albedo"]);
+    solve("--for light --extinction-scale 0", 1, &["--for light", "nothing scatters"]);
+    // Views with lights of their own.
+    let own = |more: &str, flags: &str, code: i32, parts: &[&str]| {
+        let target = "target = \"grey.png\"";
+        std::fs::write(at.join("own.toml"), view("front", FRONT, &format!("{target}\n{more}"))).unwrap();
+        refused(at, &format!("solve --volume box.npy --views own.toml {flags}"), code, parts);
+    };
+    let map = "environment = \"grey.png\"";
+    own(map, "--for light --out out", 2, &["--for light", "`front`", "leave it out"]);
+    let missing = "environment = \"none.exr\"";
+    own(missing, "--for albedo --out out", 1, &["--views", "`front`", "environment", "none.exr"]);
+    // Maps are not replaced.
+    std::fs::create_dir(at.join("job")).unwrap();
+    std::fs::copy(at.join("grey.png"), at.join("job/solved_front.png")).unwrap();
+    let inside = "environment = \"job/solved_front.png\"";
+    own(inside, "--for albedo --out job", 1, &["--out", "solved_front.png", "would be replaced"]);
+    std::fs::copy(at.join("negative.exr"), at.join("job/environment.exr")).unwrap();
+    let line =
+        "solve --volume box.npy --views v.toml --for light --environment job/environment.exr --out job";
+    refused(at, line, 1, &["--out", "environment.exr", "would be replaced"]);
 }
 
 #[test]

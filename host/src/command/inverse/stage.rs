@@ -172,7 +172,7 @@ impl Stages<'_> {
             look
         };
         let counts = vec![None; seen.len()];
-        let (look, residuals) = self.choose(&descent, look, with, |look| self.squares(look))?;
+        let (look, residuals) = self.choose(wanted, &descent, look, with, |look| self.squares(look))?;
         Ok(Left { look, residuals: only(residuals, channels), volumes, counts })
     }
 
@@ -243,7 +243,7 @@ impl Stages<'_> {
                 }
                 Look { extinction: Arc::new(found), ..look.clone() }
             };
-            let (look, own) = self.choose(&descent, look, with, |look| {
+            let (look, own) = self.choose(Wanted::Extinction, &descent, look, with, |look| {
                 let pictures = self.pictures(&self.shown(Wanted::Extinction, look))?;
                 let wrong =
                     pictures.iter().zip(rows).map(|(picture, row)| depth_squares(picture, row, channel));
@@ -288,10 +288,11 @@ impl Stages<'_> {
         })
     }
 
-    /// The volume after the last iteration, or, where that was cut short, the best one; and the residuals with that of the last. Without an
-    /// iteration the volume stays as it was.
+    /// The volume after the last iteration, or, of one that was cut short and of light, the best one, for clamped coefficients of light may
+    /// overshoot; and the residuals with that of what is kept. Without an iteration the volume stays as it was.
     fn choose(
         &self,
+        wanted: Wanted,
         descent: &Descent,
         look: &Look,
         with: impl Fn(&[Vec<f32>]) -> Look,
@@ -299,11 +300,15 @@ impl Stages<'_> {
     ) -> Result<(Look, Vec<[f32; 3]>), InverseError> {
         let Some((least, best)) = &descent.best else { return Ok((look.clone(), Vec::new())) };
         let last = with(&descent.last);
-        let own = wrong(&last)?;
+        let mut own = wrong(&last)?;
+        let mut kept = last;
+        if (self.cancel.asked() || wanted == Wanted::Light) && *least < own.iter().sum() {
+            kept = with(best);
+            own = wrong(&kept)?;
+        }
         let mut residuals = descent.residuals.clone();
         residuals.push(own.map(|channel| channel as f32));
-        let better = self.cancel.asked() && *least < own.iter().sum();
-        Ok((if better { with(best) } else { last }, residuals))
+        Ok((kept, residuals))
     }
 }
 

@@ -58,7 +58,8 @@ impl Stages<'_> {
             let found = LitDiscs { radiance: colours(found, channels), ..begun.clone() };
             Look { lights: vec![Arc::new(Illumination::Discs(found))], ..look.clone() }
         };
-        let (look, residuals) = self.choose(&descent, look, with, |look| self.squares(look))?;
+        let (look, residuals) =
+            self.choose(Wanted::Light, &descent, look, with, |look| self.squares(look))?;
         let counts = vec![None; seen.len()];
         Ok(Left { look, residuals: only(residuals, channels), volumes: Vec::new(), counts })
     }
