@@ -21,14 +21,14 @@ const SIZE: [u32; 3] = [72, 44, 36];
 /// Half of the box, metres.
 const HALF: Vec3 = Vec3::new(2.0, 1.2222, 1.0);
 /// Of the animation.
-const FRAMES: u32 = 24;
+const FRAMES: u32 = 16;
 const FRAME_SIZE: [u32; 2] = [480, 270];
 /// Frames a second.
-const RATE: u16 = 12;
+const RATE: u16 = 10;
 const EXPOSURE: f32 = 1.0;
 /// Only where there is smoke, and everywhere.
-const BARE: Effort = Effort { iterations: 8, laplacian: 2e-3, empty: false };
-const SPREAD: Effort = Effort { iterations: 40, laplacian: 2e-2, empty: true };
+const BARE: Effort = Effort { iterations: 6, laplacian: 2e-3, empty: false };
+const SPREAD: Effort = Effort { iterations: 24, laplacian: 2e-2, empty: true };
 
 fn pose(azimuth: f32) -> Pose {
     Pose::around(Vec3::ZERO, [7.0, 0.3], azimuth, 20.0)
@@ -98,7 +98,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let lights: Vec<Lighting> = daylight(&sky, (sun, 16.0 * Vec3::new(1.0, 0.95, 0.88)))?;
     let behind = |_: Vec3, way: Vec3| Vec3::new(0.085, 0.09, 0.10) * (1.0 - 1.4 * way.y).clamp(0.4, 1.6);
     let keys = [Easel::new(studio, &puff(0.0), &lights)?, Easel::new(studio, &puff(1.0), &lights)?];
-    let sides = [0.0, 40.0, -40.0];
+    let sides = [0.0, 45.0];
 
     let begun = Instant::now();
     let mut found = Vec::new();
@@ -111,7 +111,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         }
         let wishes: Vec<Wish<'_>> = painted
             .iter()
-            .zip([1.0, 0.25, 0.25])
+            .zip([1.0, 0.25])
             .map(|((board, picture), weight)| Wish { board, picture, weights: vec![weight; picture.len()] })
             .collect();
         let [bare, spread] =

@@ -25,7 +25,7 @@ pub const COLUMNS: u32 = 320;
 /// Texels and layers of the maps that light a medium: skies are soft.
 const MAPS: LightMaps = LightMaps { texels: 96, layers: 96, shadow_texels: 4 };
 /// Lights that stand for a sky.
-const SKY_LIGHTS: u32 = 32;
+const SKY_LIGHTS: u32 = 16;
 
 /// A day without haze.
 pub fn clear_sky() -> Sky {

@@ -30,7 +30,7 @@ const MAP: [u32; 2] = [1280, 640];
 /// Directional lights that stand for a disc.
 const LIGHTS_A_DISC: u32 = 3;
 const ALBEDO: f32 = 0.9;
-const EFFORT: Effort = Effort { iterations: 6, laplacian: 1e-3, empty: false };
+const EFFORT: Effort = Effort { iterations: 8, laplacian: 3e-3, empty: false };
 /// Of the light.
 const ITERATIONS: u32 = 30;
 
@@ -188,7 +188,7 @@ fn light(easel: &Easel<'_>, wishes: &[Wish<'_>]) -> Result<Found, CommandError> 
         });
     }
     let start = vec![0.2; 4 * DISCS as usize];
-    let unknown = LightUnknown { volumes, start, smallness: 1e-4, strategy: LightStrategy::Columns };
+    let unknown = LightUnknown { volumes, start, smallness: 0.02, strategy: LightStrategy::Columns };
     let mut solver = LightSolver::new(gpu, shaders, projector, targets, unknown)?;
     for _ in 0..ITERATIONS {
         solver.iterate(gpu)?;

@@ -14,8 +14,8 @@ use crate::inverse::Solved;
 use glam::{Vec2, Vec3};
 use std::time::Instant;
 
-const EFFORT: Effort = Effort { iterations: 10, laplacian: 5e-4, empty: false };
-const FIELD: f32 = 26.0;
+const EFFORT: Effort = Effort { iterations: 12, laplacian: 2e-4, empty: false };
+const FIELD: f32 = 30.0;
 const EXPOSURE: f32 = 1.0;
 
 /// A view that is painted on.
@@ -67,13 +67,22 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         found.push((name, easel.solve(solved, &plain, &wishes, EFFORT)?));
     }
     let seconds = begun.elapsed().as_secs_f64();
+    let mut facts = Vec::new();
+    for (side, (board, painting)) in sides.iter().zip(&painted) {
+        let show = |radiance: &[Vec3]| pixels(studio, radiance, board.size, EXPOSURE);
+        let wanted = show(painting.canvas.pixels())?;
+        for (what, paint) in &found {
+            let (radiance, opacity) = easel.shown(board, paint)?;
+            let value = decibels(fidelity(&show(&radiance)?, &wanted, &opacity));
+            facts.push((format!("{what}, {}", side.name), value));
+        }
+    }
 
     let about = "A sun is painted onto a cloud as it is seen from the front, and a leaf as it is seen from the side. Emission and albedo together look as painted from both; emission alone only adds light, albedo alone only takes it away. Between the two views the marks dissolve into the cloud.";
     let mut album = Album::new(&studio.out, folder, "Two logos in a cloud".to_owned(), about.to_owned())?;
-    let mut facts = Vec::new();
     for side in &sides {
         let board = Board::new(&side.pose, studio.size, behind)?;
-        let (before, opacity) = easel.shown(&board, &plain)?;
+        let (before, _) = easel.shown(&board, &plain)?;
         let target = paint(&easel, side, &board, &plain)?;
         let show = |radiance: &[Vec3]| pixels(studio, radiance, studio.size, EXPOSURE);
         let wanted = show(target.canvas.pixels())?;
@@ -90,7 +99,6 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
             let shown = show(&radiance)?;
             let file = format!("{name}_{}.png", what.replace(' ', "_"));
             album.add_tile(file, format!("Result, {name}: {what}"), studio.size, &shown)?;
-            facts.push((format!("{what}, {name}"), decibels(fidelity(&shown, &wanted, &opacity))));
         }
         // The sixth of a row: from half-way on.
         let azimuth = if name == "front" { 32.0 } else { 62.0 };

@@ -20,6 +20,8 @@ use std::time::Instant;
 
 /// Voxels along a side.
 const SIDE: u32 = 64;
+/// Degrees from side to side; opposite sides would see the same, mirrored.
+const TURN: f32 = 45.0;
 /// Greatest optical depth that is painted.
 const MOST_DEPTH: f32 = 3.0;
 const EXPOSURE: f32 = 0.9;
@@ -126,7 +128,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let projector = Projector::new(gpu, shaders, form)?;
     let mut targets = Vec::new();
     for stage in 0..4_u8 {
-        let look = Look::new(&glass, 90.0 * f32::from(stage), solve_size(studio.size, COLUMNS))?;
+        let look = Look::new(&glass, TURN * f32::from(stage), solve_size(studio.size, COLUMNS))?;
         let (wanted, weights) = look.target(stage);
         let wanted = depths(&wanted, &look, &weights)?;
         let view = projector.view(gpu, &rays(&look.camera)?, None)?;
@@ -164,7 +166,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let mut facts = Vec::new();
     let mut results = Vec::new();
     for stage in 0..4_u8 {
-        let look = Look::new(&glass, 90.0 * f32::from(stage), studio.size)?;
+        let look = Look::new(&glass, TURN * f32::from(stage), studio.size)?;
         let wanted = show(&look.target(stage).0)?;
         let result = show(&seen(&look)?)?;
         album.add_tile(
@@ -177,7 +179,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         results.push((format!("{stage}_result.png"), format!("Result {}", stage + 1), result));
     }
     let glassy = Look::new(&glass, 0.0, studio.size)?;
-    for azimuth in [25.0, 45.0, 135.0] {
+    for azimuth in [22.5, 67.5, 250.0] {
         let look = Look::new(&glass, azimuth, studio.size)?;
         results.push((
             format!("between_{azimuth}.png"),
