@@ -3,6 +3,7 @@
 
 mod album;
 mod epipole;
+mod inverse;
 mod lights;
 mod methods;
 mod page;
@@ -54,6 +55,8 @@ enum Subject {
     Painterly(&'static str),
     /// Volumes and meshes in sheets of splats.
     Splatting(&'static str),
+    /// Volumes and light from painted views.
+    Inverse(&'static str),
 }
 
 /// What is shown of light shafts where nothing is chosen.
@@ -77,7 +80,9 @@ fn all() -> Vec<Subject> {
     let transmittance = transmittance::NAMES.map(Subject::Transmittance);
     let painterly = painterly::NAMES.map(Subject::Painterly);
     let splatting = splatting::NAMES.map(Subject::Splatting);
-    scattering.chain(stylize).chain(transmittance).chain(painterly).chain(splatting).collect()
+    let inverse = inverse::NAMES.map(Subject::Inverse);
+    let before = scattering.chain(stylize).chain(transmittance);
+    before.chain(painterly).chain(splatting).chain(inverse).collect()
 }
 
 /// Runs the command.
@@ -99,6 +104,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
             Subject::Transmittance(name) => transmittance::section(&studio, &subject.folder(), name),
             Subject::Painterly(name) => painterly::section(&studio, &subject.folder(), name),
             Subject::Splatting(name) => splatting::section(&studio, &subject.folder(), name),
+            Subject::Inverse(name) => inverse::section(&studio, &subject.folder(), name),
         };
         sections.push(section?);
         bar.inc(1);
@@ -120,6 +126,7 @@ impl Subject {
             Self::Transmittance(_) => "transmittance",
             Self::Painterly(_) => "painterly",
             Self::Splatting(_) => "splatting",
+            Self::Inverse(_) => "inverse",
             _ => "scattering",
         }
     }
@@ -131,7 +138,8 @@ impl Subject {
             | Self::Stylize(name)
             | Self::Transmittance(name)
             | Self::Painterly(name)
-            | Self::Splatting(name) => name,
+            | Self::Splatting(name)
+            | Self::Inverse(name) => name,
             Self::Methods(_) => "methods",
             Self::Epipole => "epipole",
             Self::Lights => "lights",
@@ -170,7 +178,7 @@ fn choose(only: Option<&str>) -> Result<Vec<Subject>, CommandError> {
     let mut known: Vec<String> = subjects.into_iter().map(Subject::path).collect();
     known.dedup();
     let known = known.join(", ");
-    let systems = "scattering, stylize, transmittance, painterly, splatting";
+    let systems = "scattering, stylize, transmittance, painterly, splatting, inverse";
     let reason = format!("there is no `{only}`; there is {systems}, {known}");
     Err(CommandError::misuse("--only", reason))
 }
@@ -192,7 +200,12 @@ mod tests {
         assert_eq!(painterly.len(), painterly::NAMES.len());
         let splatting = choose(Some("splatting")).unwrap();
         assert_eq!(splatting.len(), splatting::NAMES.len());
-        assert_eq!([&SCATTERING[..], &stylize, &transmittance, &painterly, &splatting].concat(), all());
+        let inverse = choose(Some("inverse")).unwrap();
+        assert_eq!(inverse.len(), inverse::NAMES.len());
+        assert_eq!(
+            [&SCATTERING[..], &stylize, &transmittance, &painterly, &splatting, &inverse].concat(),
+            all()
+        );
         for subject in all() {
             assert!(choose(Some(&subject.path())).unwrap().contains(&subject));
             assert_eq!(choose(Some(&subject.folder())).unwrap(), [subject]);
@@ -202,6 +215,7 @@ mod tests {
         assert_eq!(choose(Some("stylize/halo")).unwrap(), [Subject::Stylize("halo")]);
         assert_eq!(choose(Some("transmittance/plume")).unwrap(), [Subject::Transmittance("plume")]);
         assert_eq!(choose(Some("painterly/stent")).unwrap(), [Subject::Painterly("stent")]);
+        assert_eq!(choose(Some("inverse/logos")).unwrap(), [Subject::Inverse("logos")]);
         assert_eq!(choose(Some("scattering/halo")).unwrap(), [Subject::Scene("halo")]);
     }
 

@@ -7,12 +7,12 @@ mod conflicts;
 mod descent;
 mod discs;
 mod error;
-mod field;
+pub(in crate::command) mod field;
 mod fits;
 mod light;
 mod options;
 #[allow(dead_code, unused_imports)]
-mod paint;
+pub(in crate::command) mod paint;
 mod parts;
 mod places;
 mod refraction;
@@ -20,7 +20,7 @@ mod render;
 mod report;
 mod solve;
 mod stage;
-mod studio;
+pub(in crate::command) mod studio;
 mod views;
 mod volumes;
 

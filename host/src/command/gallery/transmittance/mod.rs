@@ -5,7 +5,7 @@ mod burst;
 mod curves;
 mod scans;
 mod setting;
-mod sky;
+pub(super) mod sky;
 mod volumes;
 
 use super::album::Section;
