@@ -15,13 +15,13 @@ use crate::inverse::Solved;
 use glam::{Mat4, Vec3};
 use std::time::Instant;
 
-const EFFORT: Effort = Effort { iterations: 8, laplacian: 1e-3, empty: false };
+const EFFORT: Effort = Effort { iterations: 8, laplacian: 2e-3, empty: false };
 const EXPOSURE: f32 = 1.0;
 /// Painted from so many sides.
 const SIDES: u16 = 6;
 
 fn pose(azimuth: f32) -> Pose {
-    Pose::around(Vec3::new(0.0, 1.95, 0.0), [12.5, 0.7], azimuth, 28.5)
+    Pose::around(Vec3::new(0.0, 2.1, 0.0), [12.5, 0.7], azimuth, 29.5)
 }
 
 fn sky() -> Sky {
