@@ -91,7 +91,8 @@ impl Scene {
             picture,
             solved: Buffer::of_floats(gpu, &vec![1.0; count]),
             collected: Buffer::of_floats(gpu, &vec![0.0; count]),
-            touched: extinction.iter().map(|extinction| *extinction > 0.0).collect(),
+            // What is rendered fills the cube; emission shows where there is a medium, extinction everywhere.
+            touched: extinction.iter().map(|value| solved == Solved::Extinction || *value > 0.0).collect(),
         })
     }
 
