@@ -11,7 +11,6 @@ pub(in crate::command) mod field;
 mod fits;
 mod light;
 mod options;
-#[allow(dead_code, unused_imports)]
 pub(in crate::command) mod paint;
 mod parts;
 mod places;

@@ -39,11 +39,6 @@ impl Canvas {
         Self { size, pixels }
     }
 
-    /// Width and height in pixels.
-    pub fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
     /// Linear RGB radiance, rows from the top.
     pub fn pixels(&self) -> &[Vec3] {
         &self.pixels
