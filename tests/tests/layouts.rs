@@ -328,7 +328,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         edge_x: Vec3, reserved_e: u32, edge_y: Vec3, reserved_f: u32, edge_z: Vec3, reserved_g: u32,
     });
     twin!(twins: PictureRows { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
-    twin!(twins: RaySteps { metres: f32, most: u32, longest: f32, reserved_a: u32 });
+    twin!(twins: RaySteps { metres: f32, most: u32, reserved_a: u32, reserved_b: u32 });
     twin!(twins: VoxelGrid { size: UVec3, reserved_a: u32 });
     twin!(twins: SolverPart {
         size: UVec3, first_group: u32, laplacian: f32, smallness: f32, oneness: f32, low: f32, high: f32,

@@ -93,7 +93,7 @@ fn way_out(place: vec3<f32>, along: vec3<f32>) -> f32 {
 }
 
 /// What is next of a ray; 0 metres of one that has ended.
-fn bent_part(slopes: BoxSlopes, ray: BentRay, step: f32) -> SlicePart {
+fn part_ahead(slopes: BoxSlopes, ray: BentRay, step: f32) -> SlicePart {
     let along = unit_direction(slopes, ray.direction);
     let left = ray.reach - f32(ray.taken) * step;
     let metres = max(min(step, min(left, way_out(ray.place, along))), 0.0);
@@ -115,4 +115,11 @@ fn after_part(refraction: texture_3d<f32>, slopes: BoxSlopes, ray: BentRay, part
         select(ray.reach, 0.0, ended),
         ray.taken + 1u
     );
+}
+
+/// What is next of a ray, which goes on behind it; 0 metres of one that has ended.
+fn next_part(refraction: texture_3d<f32>, slopes: BoxSlopes, ray: ptr<function, BentRay>, step: f32) -> SlicePart {
+    let part = part_ahead(slopes, *ray, step);
+    *ray = after_part(refraction, slopes, *ray, part, step);
+    return part;
 }

@@ -31,6 +31,14 @@ fn step_depth(extinction: vec3<f32>, metres: f32) -> vec3<f32> {
 fn taken_of(depth: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(one_minus_exp(depth.x), one_minus_exp(depth.y), one_minus_exp(depth.z));
 }
+
+/// What a step through an extinction weighs behind an optical depth, to which it is added.
+fn step_weight(depth: ptr<function, vec3<f32>>, extinction: vec3<f32>, metres: f32) -> vec3<f32> {
+    let passed = step_depth(extinction, metres);
+    let weight = exp(-*depth) * taken_of(passed);
+    *depth += passed;
+    return weight;
+}
 #else
 /// The channel of a texel.
 fn channels_of(texel: vec4<f32>) -> f32 {
@@ -55,5 +63,13 @@ fn step_depth(extinction: f32, metres: f32) -> f32 {
 /// What a step of an optical depth takes of what passes.
 fn taken_of(depth: f32) -> f32 {
     return one_minus_exp(depth);
+}
+
+/// What a step through an extinction weighs behind an optical depth, to which it is added.
+fn step_weight(depth: ptr<function, f32>, extinction: f32, metres: f32) -> f32 {
+    let passed = step_depth(extinction, metres);
+    let weight = exp(-*depth) * taken_of(passed);
+    *depth += passed;
+    return weight;
 }
 #endif

@@ -69,9 +69,8 @@ struct RaySteps {
     metres: f32,
     /// Most steps of a bent ray.
     most: u32,
-    /// No ray's way in the box is longer, metres.
-    longest: f32,
     reserved_a: u32,
+    reserved_b: u32,
 }
 
 /// Voxels of what is solved for. 16 bytes.
@@ -122,6 +121,16 @@ fn ray_span(ray: SliceRay, limit: f32) -> vec2<f32> {
     return vec2<f32>(begins, min(ends, max(limit, 0.0) / max(ray.metres, 1e-30)));
 }
 
+/// The slices of a ray, nearest first: steps count from `first` to before `end`.
+struct SliceWalk {
+    /// The first slice from the low side of the axis.
+    first: u32,
+    /// The one past the last.
+    end: u32,
+    /// Whether the nearest is the first.
+    climbs: bool,
+}
+
 /// First slice of a ray's span and the one past the last, from the low side of the axis.
 fn slices_of(view: SliceView, ray: SliceRay, span: vec2<f32>) -> vec2<u32> {
     let ends = dot(ray.origin, view.axis) + dot(ray.direction, view.axis) * span;
@@ -130,6 +139,17 @@ fn slices_of(view: SliceView, ray: SliceRay, span: vec2<f32>) -> vec2<u32> {
     let low = clamp(floor(min(ends.x, ends.y) * count - 0.01), 0.0, count);
     let high = clamp(ceil(max(ends.x, ends.y) * count + 0.01), low, count);
     return select(vec2<u32>(0u), vec2<u32>(vec2<f32>(low, high)), span.y > span.x);
+}
+
+/// The slices of a ray's span in its order.
+fn slice_walk(view: SliceView, ray: SliceRay, span: vec2<f32>) -> SliceWalk {
+    let slices = slices_of(view, ray, span);
+    return SliceWalk(slices.x, slices.y, dot(ray.direction, view.axis) >= 0.0);
+}
+
+/// The slice of a step.
+fn slice_of_step(walk: SliceWalk, step: u32) -> u32 {
+    return select(walk.end - 1u - (step - walk.first), step, walk.climbs);
 }
 
 /// What a ray has of a slice within its span.

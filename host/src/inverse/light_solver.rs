@@ -1,32 +1,25 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Finds how bright lights of the surroundings are: conjugate gradients on the GPU, whose coefficients never fall below 0.
 
-mod held;
 mod strategy;
 
 pub use strategy::LightNumber;
 
+use super::descent::{Descent, VectorStart, Vectors};
 use super::error::exact;
-use super::projector::{bricks, tiles};
-use super::{InverseError, Projector, Solved, SolverSums, Target};
+use super::projector::bricks;
+use super::{InverseError, Projector, Regulariser, Solved, Target};
 use crate::gpu::Gpu;
 use crate::out_of_range::in_range;
-use crate::pass::{Bound, Pass};
+use crate::pass::Pass;
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
-use airlight_validate::Definitions;
-use held::{Coefficients, Scratch, Sitting};
 use strategy::{Columns, Operator, Volumes, check_columns};
 
-/// Scalars before the residuals.
-const FIRST_RESIDUAL: usize = 3;
-/// Least of what a pace is one over, of the mean.
-const STEEPEST: f32 = 1e-3;
-/// Most iterations of one solver.
-const MOST_ITERATIONS: u32 = 1024;
 /// Most lights.
 const MOST_LIGHTS: u32 = 1024;
-/// The vectors of coefficients.
+/// The vectors of coefficients that pictures are rendered of.
+const VECTORS: usize = 3;
 const SOLUTION: usize = 0;
 const DIRECTION: usize = 1;
 const TRIAL: usize = 2;
@@ -54,24 +47,17 @@ pub struct LightUnknown {
     pub strategy: LightStrategy,
 }
 
-/// What it runs besides the projector.
-struct Passes {
-    pictures: Pass,
-    volume: Pass,
-    scalars: Pass,
-}
-
 /// Finds coefficients of lights whose pictures are nearest to those that are wanted.
 pub struct LightSolver {
     projector: Projector,
-    passes: Passes,
-    scratch: Scratch,
-    sittings: Vec<Sitting>,
-    coefficients: Coefficients,
+    volume: Pass,
+    descent: Descent,
+    /// The coefficients: to the passes a volume of one row.
+    vectors: Vectors,
+    /// Coefficients to try.
+    trial: Buffer,
+    lights: usize,
     operator: Operator,
-    counts: Buffer,
-    numbers: SolverSums,
-    bound: Bound,
 }
 
 impl LightSolver {
@@ -93,86 +79,69 @@ impl LightSolver {
         }
         let LightUnknown { volumes, start, smallness, strategy } = unknown;
         let lights = volumes.len();
+        let channels = projector.channels().numbers();
         in_range("number of lights", lights as f32, 1.0..=MOST_LIGHTS as f32, "from 1 to 1024")?;
         in_range("weight of small coefficients", smallness, 0.0..=f32::MAX, "0 or more and finite")?;
-        let channels = projector.channels().numbers();
-        let values = |volume: &Texture| {
-            let texels: usize = volume.size().into_iter().map(|side| side as usize).product();
-            texels * usize::from(volume.raw.format().components())
-        };
-        for volume in &volumes {
-            exact("channels of light volumes", channels, usize::from(volume.raw.format().components()))?;
-            if volume.size() != volumes[0].size() {
-                exact("light volumes of one size", values(&volumes[0]), values(volume))?;
-            }
+        check_volumes(channels, &volumes)?;
+        exact("coefficients to begin with", channels * lights, start.len())?;
+        for value in &start {
+            in_range("coefficient of a light", *value, 0.0..=f32::MAX, "0 or more and finite")?;
         }
         check_columns(gpu, strategy, channels, lights, &targets)?;
         let definitions = projector.definitions();
-        let pass =
-            |name: &str, definitions: &Definitions| Pass::compute_with(gpu, shaders, name, definitions);
-        let passes = Passes {
-            pictures: pass("inverse/picture_sums", &definitions)?,
-            volume: pass("inverse/solver_volume", &definitions)?,
-            scalars: pass("inverse/solver_scalars", &Definitions::new())?,
-        };
-        let groups: u32 = bricks([lights as u32, 1, 1]).into_iter().product();
-        let sums_of = |target: &Target| tiles(target.view.size()).into_iter().product::<u32>();
-        let pictures: u32 = targets.iter().map(sums_of).sum();
-        let numbers = SolverSums { groups, first_picture: 2 * groups, pictures, iteration: 0 };
-        let scratch = Scratch::new(gpu, 2 * groups + pictures, MOST_ITERATIONS);
-        let coefficients = Coefficients::new(gpu, &projector, &passes.volume, &scratch, lights, &start)?;
-        let mut first = numbers.first_picture;
-        let mut sittings = Vec::new();
-        for target in targets {
-            let own = sums_of(&target);
-            sittings.push(Sitting::new(gpu, &projector, &passes.pictures, &scratch, target, first)?);
-            first += own;
-        }
-        let (vectors, products) = (&coefficients.vectors, &coefficients.gradient);
+        let volume = Pass::compute_with(gpu, shaders, "inverse/solver_volume", &definitions)?;
+        let size = [lights as u32, 1, 1];
+        let groups: u32 = bricks(size).into_iter().product();
+        let descent = Descent::new(gpu, shaders, &projector, targets, groups)?;
+        let begin = VectorStart { size, first_group: 0, groups, high: f32::MAX, solved: vec![1.0; lights] };
+        let vectors = Vectors::new(gpu, &projector, &volume, &descent, &begin)?;
+        let trial = Buffer::storage(gpu, 4 * (channels * lights) as u64);
+        let rendered = [&vectors.solution, &vectors.direction, &trial];
+        let products = &vectors.gradient;
         let operator = match strategy {
             LightStrategy::Volumes => Operator::Volumes(Box::new(Volumes::new(
-                gpu, shaders, &projector, &volumes, vectors, products,
+                gpu, shaders, &projector, &volumes, &rendered, products,
             )?)),
             LightStrategy::Columns => Operator::Columns(Columns::new(
-                gpu, shaders, &projector, &volumes, vectors, products, &sittings,
+                gpu,
+                shaders,
+                &projector,
+                &volumes,
+                &rendered,
+                products,
+                &descent.sittings,
             )?),
         };
-        let counts = Buffer::uniform(gpu, &numbers);
-        let resources = [
-            ("counts", (&counts).into()),
-            ("sums", (&scratch.sums).into()),
-            ("scalars", (&scratch.scalars).into()),
-        ];
-        let bound = passes.scalars.bind_known(gpu, &resources)?;
-        let mut solver =
-            Self { projector, passes, scratch, sittings, coefficients, operator, counts, numbers, bound };
+        let mut solver = Self { projector, volume, descent, vectors, trial, lights, operator };
         solver.prepare(gpu, &start, smallness)?;
         Ok(solver)
     }
 
-    /// Scales the regulariser by the mean of T'C T 1; what is sent back to a light says how far it goes. Then the solution begins
-    /// where it should.
+    /// Scales the regulariser and finds paces: what the pictures of ones send back to a light says how far it goes.
     fn prepare(&mut self, gpu: &Gpu, start: &[f32], smallness: f32) -> Result<(), InverseError> {
         let mut encoder = gpu.encoder();
         self.pictures_of(gpu, &mut encoder, SOLUTION, "weigh_picture")?;
-        self.scalars(&mut encoder, "keep_residual")?;
-        self.operator.collect(gpu, &mut encoder, &self.projector, &self.sittings)?;
+        self.descent.scalars(&mut encoder, "keep_residual")?;
+        self.collect(gpu, &mut encoder)?;
         gpu.submit(encoder)?;
-        let scalars = self.scratch.scalars.read_floats(gpu)?;
-        let squares: f32 = scalars[4 * FIRST_RESIDUAL..][..3].iter().sum();
-        let lights = self.coefficients.count as usize;
-        let scale = squares / (self.projector.channels().used() * lights) as f32;
-        let own = &mut self.coefficients;
-        own.vectors[SOLUTION].write_floats(gpu, start);
-        own.settings.smallness = scale * smallness;
-        own.settings.steepest = scale * STEEPEST;
-        own.uniform.write(gpu, &own.settings);
+        let scale = self.descent.scale(gpu, self.projector.channels().used() * self.lights)?;
+        self.vectors.prepare(gpu, scale, Regulariser { smallness, ..Regulariser::default() }, start);
         let mut encoder = gpu.encoder();
-        self.lights(&mut encoder, "solver_paces")?;
+        self.vectors.dispatch(&mut encoder, &self.volume, "solver_paces")?;
         Ok(gpu.submit(encoder)?)
     }
 
-    /// Pictures of all views in the lights of a vector, with each of which something is done.
+    /// Pictures of all views in the lights of a vector.
+    fn render(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        vector: usize,
+    ) -> Result<(), InverseError> {
+        self.operator.render(gpu, encoder, &self.projector, &self.descent.sittings, vector)
+    }
+
+    /// These pictures, with each of which something is done.
     fn pictures_of(
         &self,
         gpu: &Gpu,
@@ -180,22 +149,13 @@ impl LightSolver {
         vector: usize,
         entry: &str,
     ) -> Result<(), InverseError> {
-        self.operator.render(gpu, encoder, &self.projector, &self.sittings, vector)?;
-        for sitting in &self.sittings {
-            let groups = tiles(sitting.view.size());
-            self.passes.pictures.dispatch_groups(encoder, &sitting.bound, entry, groups)?;
-        }
-        Ok(())
+        self.render(gpu, encoder, vector)?;
+        self.descent.sittings.iter().try_for_each(|sitting| self.descent.picture(encoder, sitting, entry))
     }
 
-    fn lights(&self, encoder: &mut wgpu::CommandEncoder, entry: &str) -> Result<(), InverseError> {
-        let own = &self.coefficients;
-        let groups = bricks([own.count, 1, 1]);
-        Ok(self.passes.volume.dispatch_groups(encoder, &own.bound, entry, groups)?)
-    }
-
-    fn scalars(&self, encoder: &mut wgpu::CommandEncoder, entry: &str) -> Result<(), InverseError> {
-        Ok(self.passes.scalars.dispatch_groups(encoder, &self.bound, entry, [1, 1, 1])?)
+    /// What the differences of all views say of each light.
+    fn collect(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Result<(), InverseError> {
+        self.operator.collect(gpu, encoder, &self.projector, &self.descent.sittings)
     }
 
     /// One iteration.
@@ -203,26 +163,20 @@ impl LightSolver {
     /// # Errors
     /// [`InverseError`].
     pub fn iterate(&mut self, gpu: &Gpu) -> Result<(), InverseError> {
-        in_range(
-            "number of iterations",
-            (self.numbers.iteration + 1) as f32,
-            1.0..=MOST_ITERATIONS as f32,
-            "from 1 to 1024",
-        )?;
-        self.counts.write(gpu, &self.numbers);
+        self.descent.begin(gpu)?;
         let mut encoder = gpu.encoder();
         self.pictures_of(gpu, &mut encoder, SOLUTION, "weigh_difference")?;
-        self.scalars(&mut encoder, "keep_residual")?;
-        self.operator.collect(gpu, &mut encoder, &self.projector, &self.sittings)?;
-        self.lights(&mut encoder, "solver_gradient")?;
-        self.scalars(&mut encoder, "choose_direction")?;
-        self.lights(&mut encoder, "solver_direction")?;
+        self.descent.scalars(&mut encoder, "keep_residual")?;
+        self.collect(gpu, &mut encoder)?;
+        self.vectors.dispatch(&mut encoder, &self.volume, "solver_gradient")?;
+        self.descent.scalars(&mut encoder, "choose_direction")?;
+        self.vectors.dispatch(&mut encoder, &self.volume, "solver_direction")?;
         self.pictures_of(gpu, &mut encoder, DIRECTION, "weigh_picture")?;
-        self.lights(&mut encoder, "solver_curvature")?;
-        self.scalars(&mut encoder, "choose_step")?;
-        self.lights(&mut encoder, "solver_advance")?;
+        self.vectors.dispatch(&mut encoder, &self.volume, "solver_curvature")?;
+        self.descent.scalars(&mut encoder, "choose_step")?;
+        self.vectors.dispatch(&mut encoder, &self.volume, "solver_advance")?;
         gpu.submit(encoder)?;
-        self.numbers.iteration += 1;
+        self.descent.end();
         Ok(())
     }
 
@@ -231,9 +185,7 @@ impl LightSolver {
     /// # Errors
     /// [`InverseError::Gpu`].
     pub fn residuals(&self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, InverseError> {
-        let all = self.scratch.scalars.read_floats(gpu)?;
-        let rows = all.chunks_exact(4).skip(FIRST_RESIDUAL).take(self.numbers.iteration as usize);
-        Ok(rows.map(|row| [row[0], row[1], row[2]]).collect())
+        self.descent.residuals(gpu)
     }
 
     /// The coefficients as they are: the projector's numbers a light.
@@ -241,13 +193,7 @@ impl LightSolver {
     /// # Errors
     /// [`InverseError::Gpu`].
     pub fn coefficients(&self, gpu: &Gpu) -> Result<Vec<f32>, InverseError> {
-        self.read(gpu, &self.coefficients.vectors[SOLUTION])
-    }
-
-    fn read(&self, gpu: &Gpu, vector: &Buffer) -> Result<Vec<f32>, InverseError> {
-        let mut values = vector.read_floats(gpu)?;
-        values.truncate(self.projector.channels().numbers() * self.coefficients.count as usize);
-        Ok(values)
+        self.vectors.read(gpu, &self.projector, &self.vectors.solution)
     }
 
     /// T L: pictures of all views with coefficients of one's own, numbers of the projector's channels a pixel.
@@ -255,13 +201,13 @@ impl LightSolver {
     /// # Errors
     /// [`InverseError::Count`], [`InverseError::Gpu`].
     pub fn pictures(&self, gpu: &Gpu, coefficients: &[f32]) -> Result<Vec<Vec<f32>>, InverseError> {
-        let needed = self.projector.channels().numbers() * self.coefficients.count as usize;
+        let needed = self.projector.channels().numbers() * self.lights;
         exact("coefficients of lights", needed, coefficients.len())?;
-        self.coefficients.vectors[TRIAL].write_floats(gpu, coefficients);
+        self.trial.write_floats(gpu, coefficients);
         let mut encoder = gpu.encoder();
-        self.operator.render(gpu, &mut encoder, &self.projector, &self.sittings, TRIAL)?;
+        self.render(gpu, &mut encoder, TRIAL)?;
         gpu.submit(encoder)?;
-        self.sittings.iter().map(|sitting| Ok(sitting.view.rendered.read(gpu)?)).collect()
+        self.descent.sittings.iter().map(|sitting| Ok(sitting.view.rendered.read(gpu)?)).collect()
     }
 
     /// T' c: what pictures of all views say of each light.
@@ -269,18 +215,33 @@ impl LightSolver {
     /// # Errors
     /// [`InverseError::Count`], [`InverseError::Gpu`].
     pub fn products(&self, gpu: &Gpu, pictures: &[Vec<f32>]) -> Result<Vec<f32>, InverseError> {
-        exact("pictures of views", self.sittings.len(), pictures.len())?;
-        for (sitting, picture) in self.sittings.iter().zip(pictures) {
+        exact("pictures of views", self.descent.sittings.len(), pictures.len())?;
+        for (sitting, picture) in self.descent.sittings.iter().zip(pictures) {
             sitting.difference.write(gpu, picture)?;
         }
         let mut encoder = gpu.encoder();
-        self.operator.collect(gpu, &mut encoder, &self.projector, &self.sittings)?;
+        self.collect(gpu, &mut encoder)?;
         gpu.submit(encoder)?;
-        let products = self.read(gpu, &self.coefficients.gradient);
+        let products = self.vectors.read(gpu, &self.projector, &self.vectors.gradient);
         // An iteration finds zeros there.
         let mut encoder = gpu.encoder();
-        encoder.clear_buffer(&self.coefficients.gradient.raw, 0, None);
+        encoder.clear_buffer(&self.vectors.gradient.raw, 0, None);
         gpu.submit(encoder)?;
         products
     }
+}
+
+/// Light volumes of one size and of the channels that are solved for.
+fn check_volumes(channels: usize, volumes: &[Texture]) -> Result<(), InverseError> {
+    let values = |volume: &Texture| {
+        let texels: usize = volume.size().into_iter().map(|side| side as usize).product();
+        texels * usize::from(volume.raw.format().components())
+    };
+    for volume in volumes {
+        exact("channels of light volumes", channels, usize::from(volume.raw.format().components()))?;
+        if volume.size() != volumes[0].size() {
+            exact("light volumes of one size", values(&volumes[0]), values(volume))?;
+        }
+    }
+    Ok(())
 }

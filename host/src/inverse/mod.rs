@@ -5,6 +5,7 @@
 //! [`Projector`] renders (`W`) and projects pictures back into the volume (the transpose of `W`), with the same weights and without
 //! storing a matrix. [`Solver`] finds the volumes whose pictures are nearest to those that are wanted.
 
+mod descent;
 mod error;
 mod hull;
 mod light;
@@ -18,6 +19,7 @@ mod solver;
 mod touched;
 mod view;
 
+pub use descent::{SolverPart, SolverScalars, SolverSums};
 pub use error::InverseError;
 pub use hull::{Silhouette, visual_hull};
 pub use light::{LightLayers, LightMaps, LightPasses, ShadowCasters};
@@ -29,6 +31,6 @@ pub use projector::{
     Basis, Channels, Collected, Fields, Medium, Projector, ProjectorForm, Solved, Transpose, ViewImages,
 };
 pub use radiance_targets::radiance_targets;
-pub use solver::{Solver, SolverPart, SolverScalars, SolverSums};
+pub use solver::Solver;
 pub use touched::touched;
 pub use view::{PictureRows, RaySteps, SliceView, VoxelGrid};

@@ -24,6 +24,8 @@ pub struct ViewImages {
     size: [u32; 2],
     slices: u32,
     steps: Buffer,
+    /// No ray's way in the box is longer, metres.
+    longest: f32,
     spans: Texture,
     /// `W a`: radiance, or optical depth.
     pub rendered: Texture,
@@ -156,7 +158,7 @@ impl Projector {
                 texture
             }
         };
-        let steps = Buffer::uniform(gpu, &RaySteps::of_view(view, self.form.refraction)?);
+        let (steps, longest) = RaySteps::of_view(view, self.form.refraction)?;
         // Rays that end at surfaces do so anywhere.
         let margin = if depths.is_some() { f32::MAX } else { view.margin };
         let uniform = Buffer::uniform(gpu, &SliceView { margin, ..*view });
@@ -173,7 +175,8 @@ impl Projector {
             view: uniform,
             size,
             slices: view.slices,
-            steps,
+            steps: Buffer::uniform(gpu, &steps),
+            longest,
             spans,
             rendered: image(),
             through: image(),

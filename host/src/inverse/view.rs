@@ -83,27 +83,27 @@ pub struct RaySteps {
     pub metres: f32,
     /// Most steps of a bent ray.
     pub most: u32,
-    /// No ray's way in the box is longer, metres.
-    pub longest: f32,
     /// Padding.
     pub reserved_a: u32,
+    /// Padding.
+    pub reserved_b: u32,
 }
 
 impl RaySteps {
     /// Of rays of a view, bent ones in steps of so many metres. A bent ray goes four times as far as from corner to corner at most: one
-    /// that has not left the box by then goes round in it.
-    pub(super) fn of_view(view: &SliceView, refraction: Option<f32>) -> Result<Self, InverseError> {
+    /// that has not left the box by then goes round in it. And metres that no ray's way in the box is longer than.
+    pub(super) fn of_view(view: &SliceView, refraction: Option<f32>) -> Result<(Self, f32), InverseError> {
         let edges = [view.edge_x, view.edge_y, view.edge_z].map(Vec3::as_dvec3);
         let Some(metres) = refraction else {
             // Not less than any of the diagonals.
             let longest = edges.iter().map(|edge| edge.length()).sum::<f64>() as f32;
-            return Ok(Self { metres: f32::MAX, most: 0, longest, reserved_a: 0 });
+            return Ok((Self { metres: f32::MAX, most: 0, reserved_a: 0, reserved_b: 0 }, longest));
         };
         let most = (4.0 * edges.iter().sum::<DVec3>().length() / f64::from(metres)).ceil();
         let range = "at most 65536, so give longer steps";
         in_range("number of steps of bent rays", most as f32, 0.0..=MOST_STEPS as f32, range)?;
         let longest = (most * f64::from(metres)) as f32;
-        Ok(Self { metres, most: most as u32, longest, reserved_a: 0 })
+        Ok((Self { metres, most: most as u32, reserved_a: 0, reserved_b: 0 }, longest))
     }
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Greatest absolute values of a picture and of scattered light: how fine fixed point can be.
 // source: none; maxima of bit patterns, which are ordered as the positive floats are.
-// note: Dispatch `greatest_picture` over the picture and, with ALBEDO, `greatest_light` over the texels of `scattered`, into zeros. Channel by
+// note: Dispatch `greatest_picture` over the picture and, with ALBEDO, `greatest_light` over the texels of `scattered`. Begin with zeros, and without ALBEDO with the bounds of row sums. Channel by
 // note: channel; what is not finite counts as 0. The result is the same in every run.
 // definition ALBEDO: scattered light too.
 // binding picture: the picture.
 // binding scattered: radiance that an albedo of 1 scatters towards the eye; with ALBEDO.
-// binding greatest: in and out, bits of four channels of the picture, then of scattered light.
+// binding greatest: in and out, bits of four channels of the picture, then of the bounds of row sums (inverse/fixed_point), which are
+// binding greatest: the greatest values of scattered light with ALBEDO; else they stay as they are.
 
 #import airlight::core::finite::finite_or
 

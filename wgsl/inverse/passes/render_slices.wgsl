@@ -24,13 +24,13 @@
 #import airlight::inverse::slice_steps::{SliceView, slice_ray}
 #ifdef BENT
 #import airlight::inverse::slice_steps::RaySteps
-#import airlight::inverse::bent_rays::{bent_ray, bent_part, after_part, box_slopes}
+#import airlight::inverse::bent_rays::{bent_ray, next_part, box_slopes}
 #else
-#import airlight::inverse::slice_steps::{slices_of, slice_part}
+#import airlight::inverse::slice_steps::{slice_walk, slice_of_step, slice_part}
 #endif
 #import airlight::inverse::channels::{channels_of, texel_of, all_channels}
 #ifndef PATHS
-#import airlight::inverse::channels::{step_depth, taken_of}
+#import airlight::inverse::channels::step_weight
 #endif
 #import airlight::inverse::basis::{box_field, triangle_field}
 
@@ -80,29 +80,30 @@ fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef BENT
     let slopes = box_slopes(view);
     var bent = bent_ray(refraction, view, ray, span);
-    let slices = vec2<u32>(0u, steps.most);
+    let first = 0u;
+    let end = steps.most;
 #else
-    let slices = slices_of(view, ray, span);
-    let climbs = dot(ray.direction, view.axis) >= 0.0;
+    let walk = slice_walk(view, ray, span);
+    let first = walk.first;
+    let end = walk.end;
 #endif
     var sum = all_channels(0.0);
 #ifndef PATHS
     var depth = all_channels(0.0);
 #endif
-    for (var step = slices.x; step < slices.y; step++) {
+    for (var step = first; step < end; step++) {
 #ifdef BENT
-        let part = bent_part(slopes, bent, steps.metres);
+        let part = next_part(refraction, slopes, &bent, steps.metres);
         if part.metres <= 0.0 {
             break;
         }
-        bent = after_part(refraction, slopes, bent, part, steps.metres);
 #else
-        let part = slice_part(view, ray, span, select(slices.y - 1u - (step - slices.x), step, climbs));
+        let part = slice_part(view, ray, span, slice_of_step(walk, step));
 #endif
 #ifdef PATHS
         sum += channels_of(solved(extinction, part.place)) * part.metres;
 #else
-        let passed = step_depth(channels_of(triangle_field(extinction, part.place)), part.metres);
+        let weight = step_weight(&depth, channels_of(triangle_field(extinction, part.place)), part.metres);
         var radiance = all_channels(0.0);
 #ifdef EMISSION
         radiance += channels_of(solved(emission, part.place));
@@ -110,8 +111,7 @@ fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef ALBEDO
         radiance += channels_of(solved(albedo, part.place)) * channels_of(triangle_field(scattered, part.place));
 #endif
-        sum += exp(-depth) * taken_of(passed) * radiance;
-        depth += passed;
+        sum += weight * radiance;
 #endif
     }
     textureStore(rendered, id.xy, texel_of(sum));

@@ -12,7 +12,7 @@
 // definition BENT: rays are bent by an index of refraction.
 // binding view: the view.
 // binding spans: which part of each ray lies in the volume, rg32float; of inverse/ray_spans, with BENT if this has it.
-// binding steps: of its rays; with PATHS or BENT.
+// binding steps: of its rays; with BENT.
 // binding grid: the voxels.
 // binding picture: what is projected back.
 // binding extinction: of the medium, 1/m; without PATHS.
@@ -22,22 +22,25 @@
 // binding words: in and out, channel by channel and x fastest, two words a number, the lower first; with SWAP one.
 
 #import airlight::core::finite::finite_or
-#import airlight::inverse::slice_steps::{SliceView, RaySteps, VoxelGrid, slice_ray}
+#import airlight::inverse::slice_steps::{SliceView, VoxelGrid, slice_ray}
 #ifdef BENT
-#import airlight::inverse::bent_rays::{bent_ray, bent_part, after_part, box_slopes}
+#import airlight::inverse::slice_steps::RaySteps
+#import airlight::inverse::bent_rays::{bent_ray, next_part, box_slopes}
 #else
-#import airlight::inverse::slice_steps::{slices_of, slice_part}
+#import airlight::inverse::slice_steps::{slice_walk, slice_of_step, slice_part}
 #endif
 #import airlight::inverse::channels::{channels_of, all_channels}
 #ifndef PATHS
-#import airlight::inverse::channels::{step_depth, taken_of}
+#import airlight::inverse::channels::step_weight
 #endif
 #import airlight::inverse::basis::{triangle_corner, triangle_field, voxel_of_place}
 #import airlight::inverse::fixed_point::{fixed_exponent, fixed_words, pixel_exponent}
 
 @group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
 @group(#{GROUP}) @binding(1) var spans: texture_2d<f32>;
+#ifdef BENT
 @group(#{GROUP}) @binding(2) var<uniform> steps: RaySteps;
+#endif
 @group(#{GROUP}) @binding(3) var<uniform> grid: VoxelGrid;
 @group(#{GROUP}) @binding(4) var picture: texture_2d<f32>;
 #ifndef PATHS
@@ -98,16 +101,8 @@ fn exponents_of_channels() -> vec3<i32> {
     var exponents = vec3<i32>(0);
 #ifndef SWAP
     for (var channel = 0u; channel < 3u; channel++) {
-#ifdef PATHS
-        let bound = bitcast<u32>(steps.longest);
-#else
-#ifdef ALBEDO
-        let bound = greatest[min(4u + channel, arrayLength(&greatest) - 1u)];
-#else
-        let bound = bitcast<u32>(1.0);
-#endif
-#endif
-        exponents[channel] = fixed_exponent(greatest[min(channel, arrayLength(&greatest) - 1u)], bound);
+        let most = arrayLength(&greatest) - 1u;
+        exponents[channel] = fixed_exponent(greatest[min(channel, most)], greatest[min(4u + channel, most)]);
     }
 #endif
     return exponents;
@@ -127,30 +122,29 @@ fn scatter_steps(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef BENT
     let slopes = box_slopes(view);
     var bent = bent_ray(refraction, view, ray, span);
-    let slices = vec2<u32>(0u, steps.most);
+    let first = 0u;
+    let end = steps.most;
 #else
-    let slices = slices_of(view, ray, span);
-    let climbs = dot(ray.direction, view.axis) >= 0.0;
+    let walk = slice_walk(view, ray, span);
+    let first = walk.first;
+    let end = walk.end;
 #endif
 #ifndef PATHS
     var depth = all_channels(0.0);
 #endif
-    for (var step = slices.x; step < slices.y; step++) {
+    for (var step = first; step < end; step++) {
 #ifdef BENT
-        let part = bent_part(slopes, bent, steps.metres);
+        let part = next_part(refraction, slopes, &bent, steps.metres);
         if part.metres <= 0.0 {
             break;
         }
-        bent = after_part(refraction, slopes, bent, part, steps.metres);
 #else
-        let part = slice_part(view, ray, span, select(slices.y - 1u - (step - slices.x), step, climbs));
+        let part = slice_part(view, ray, span, slice_of_step(walk, step));
 #endif
 #ifdef PATHS
         let sent = value * part.metres;
 #else
-        let passed = step_depth(channels_of(triangle_field(extinction, part.place)), part.metres);
-        var weight = exp(-depth) * taken_of(passed);
-        depth += passed;
+        var weight = step_weight(&depth, channels_of(triangle_field(extinction, part.place)), part.metres);
 #ifdef ALBEDO
         weight *= channels_of(triangle_field(scattered, part.place));
 #endif

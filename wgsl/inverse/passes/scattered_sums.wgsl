@@ -1,31 +1,27 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Adds what inverse/scatter_steps has scattered to what is collected, and leaves zeros.
 // source: none; fixed point as floats.
-// note: Dispatch over the voxels, with the definitions of inverse/scatter_steps.
-// definition PATHS: weights of extinction.
-// definition ALBEDO: weights of albedo; else of emission. Without PATHS.
+// note: Dispatch over the voxels, with RGB and SWAP as inverse/scatter_steps has them.
 // definition RGB: three channels, each by itself; else one.
 // definition SWAP: sums are floats in single words.
 // binding view: the view.
-// binding steps: of its rays; with PATHS.
 // binding grid: the voxels.
 // binding greatest: of inverse/greatest_values; without SWAP.
 // binding words: in and out, sums and then zeros.
 // binding solved: 0 where a voxel is not solved for: it stays as it is. A number a voxel, x fastest.
 // binding collected: in and out, a number a voxel; four with RGB, of which the last stays as it is.
 
-#import airlight::inverse::slice_steps::{SliceView, RaySteps, VoxelGrid}
+#import airlight::inverse::slice_steps::{SliceView, VoxelGrid}
 #import airlight::inverse::fixed_point::{fixed_exponent, fixed_number, pixel_exponent}
 
 @group(#{GROUP}) @binding(0) var<uniform> view: SliceView;
-@group(#{GROUP}) @binding(1) var<uniform> steps: RaySteps;
-@group(#{GROUP}) @binding(2) var<uniform> grid: VoxelGrid;
+@group(#{GROUP}) @binding(1) var<uniform> grid: VoxelGrid;
 #ifndef SWAP
-@group(#{GROUP}) @binding(3) var<storage, read> greatest: array<u32>;
+@group(#{GROUP}) @binding(2) var<storage, read> greatest: array<u32>;
 #endif
-@group(#{GROUP}) @binding(4) var<storage, read_write> words: array<u32>;
-@group(#{GROUP}) @binding(5) var<storage, read> solved: array<f32>;
-@group(#{GROUP}) @binding(6) var<storage, read_write> collected: array<f32>;
+@group(#{GROUP}) @binding(3) var<storage, read_write> words: array<u32>;
+@group(#{GROUP}) @binding(4) var<storage, read> solved: array<f32>;
+@group(#{GROUP}) @binding(5) var<storage, read_write> collected: array<f32>;
 
 /// Takes a number out of the words. `channel`: of it, 0 to 2.
 fn taken(number: u32, channel: u32) -> f32 {
@@ -39,16 +35,8 @@ fn taken(number: u32, channel: u32) -> f32 {
     let both = vec2<u32>(words[place], words[place + 1u]);
     words[place] = 0u;
     words[place + 1u] = 0u;
-#ifdef PATHS
-    let bound = bitcast<u32>(steps.longest);
-#else
-#ifdef ALBEDO
-    let bound = greatest[min(4u + channel, arrayLength(&greatest) - 1u)];
-#else
-    let bound = bitcast<u32>(1.0);
-#endif
-#endif
-    let exponent = fixed_exponent(greatest[min(channel, arrayLength(&greatest) - 1u)], bound);
+    let most = arrayLength(&greatest) - 1u;
+    let exponent = fixed_exponent(greatest[min(channel, most)], greatest[min(4u + channel, most)]);
     return fixed_number(both, exponent, pixel_exponent(view.width * view.height));
 #endif
 }

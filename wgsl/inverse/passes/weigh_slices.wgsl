@@ -20,8 +20,8 @@
 #ifdef PATHS
 #import airlight::inverse::slice_steps::whole_slice_metres
 #else
-#import airlight::inverse::slice_steps::{slices_of, slice_part}
-#import airlight::inverse::channels::{all_channels, step_depth, taken_of}
+#import airlight::inverse::slice_steps::{slice_walk, slice_of_step, slice_part}
+#import airlight::inverse::channels::{all_channels, step_weight}
 #import airlight::inverse::basis::triangle_field
 #endif
 
@@ -55,19 +55,16 @@ fn weigh_slices(@builtin(global_invocation_id) id: vec3<u32>) {
     textureStore(weighed, vec3<u32>(id.xy, 0u), texel_of(value * whole_slice_metres(view, ray)));
 #else
     let span = textureLoad(spans, min(pixel, textureDimensions(spans) - 1u), 0).xy;
-    let slices = slices_of(view, ray, span);
-    let climbs = dot(ray.direction, view.axis) >= 0.0;
+    let walk = slice_walk(view, ray, span);
     var depth = all_channels(0.0);
-    for (var step = slices.x; step < slices.y; step++) {
-        let slice = select(slices.y - 1u - (step - slices.x), step, climbs);
+    for (var step = walk.first; step < walk.end; step++) {
+        let slice = slice_of_step(walk, step);
         let part = slice_part(view, ray, span, slice);
-        let passed = step_depth(channels_of(triangle_field(extinction, part.place)), part.metres);
-        var weight = exp(-depth) * taken_of(passed);
+        var weight = step_weight(&depth, channels_of(triangle_field(extinction, part.place)), part.metres);
 #ifdef ALBEDO
         weight *= channels_of(triangle_field(scattered, part.place));
 #endif
         textureStore(weighed, vec3<u32>(id.xy, slice), texel_of(value * weight));
-        depth += passed;
     }
 #endif
 }

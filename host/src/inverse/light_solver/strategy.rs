@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures of all lights and their transpose: by volumes that are rendered, or by pictures that are stored.
 
+use super::super::descent::Sitting;
 use super::super::projector::{bricks, tiles};
 use super::super::{
     Collected, Fields, InverseError, LightStrategy, Projector, Target, ViewImages, VoxelGrid,
 };
-use super::held::{Sitting, VECTORS};
+use super::VECTORS;
 use crate::gpu::Gpu;
 use crate::pass::{Bound, Pass, Resource};
 use crate::resource::{Buffer, Texture};
@@ -107,7 +108,7 @@ impl Volumes {
         shaders: &Shaders,
         projector: &Projector,
         volumes: &[Texture],
-        vectors: &[Buffer; VECTORS],
+        vectors: &[&Buffer; VECTORS],
         products: &Buffer,
     ) -> Result<Self, InverseError> {
         let definitions = projector.definitions();
@@ -175,7 +176,7 @@ impl Columns {
         shaders: &Shaders,
         projector: &Projector,
         volumes: &[Texture],
-        vectors: &[Buffer; VECTORS],
+        vectors: &[&Buffer; VECTORS],
         products: &Buffer,
         sittings: &[Sitting],
     ) -> Result<Self, InverseError> {

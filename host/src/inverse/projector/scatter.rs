@@ -13,9 +13,6 @@ use crate::shaders::Shaders;
 use glam::UVec3;
 use std::sync::{Mutex, PoisonError};
 
-/// Bits of the greatest values: four channels of the picture, then of scattered light.
-const GREATEST_BYTES: u64 = 32;
-
 /// The passes of one volume that is solved for.
 struct PartPasses {
     albedo: bool,
@@ -49,7 +46,7 @@ impl Scatterer {
                 albedo,
                 greatest: (!swap).then(greatest).transpose()?,
                 scatter: compute(gpu, shaders, "inverse/scatter_steps", &flags)?,
-                sums: compute(gpu, shaders, "inverse/scattered_sums", &flags[..4])?,
+                sums: compute(gpu, shaders, "inverse/scattered_sums", &flags[2..4])?,
             })
         };
         let parts = match form.solved {
@@ -87,7 +84,13 @@ impl Scatterer {
         let words = self.words(gpu, collected)?;
         for (passes, part) in self.parts.iter().zip(collected) {
             let grid = Buffer::uniform(gpu, &VoxelGrid { size: UVec3::from(part.grid), reserved_a: 0 });
-            let greatest = Buffer::storage(gpu, GREATEST_BYTES);
+            // Four channels of the picture, then the bounds of row sums: those of albedo are found on the GPU.
+            let bound = match self.form.solved {
+                Solved::Extinction => view.longest,
+                _ if passes.albedo => 0.0,
+                _ => 1.0,
+            };
+            let greatest = Buffer::of_floats(gpu, &[0.0, 0.0, 0.0, 0.0, bound, bound, bound, bound]);
             let mut resources: Vec<(&str, Resource<'_>)> = vec![
                 ("view", (&view.view).into()),
                 ("spans", (&view.spans).into()),
