@@ -73,6 +73,7 @@ pub fn cameras() -> Vec<(&'static str, ReferenceCamera, Camera)> {
     };
     let perspective = |eye: Vec3, fov_y: f64, reversed: bool| towards(eye, target, fov_y, reversed);
     let close = Vec3::new(0.39, -0.2, 0.92);
+    let within = Vec3::new(-0.2, 0.1, -0.15);
     let parallel = OrthographicView {
         eye: Vec3::new(-2.0, 1.5, 3.0),
         target,
@@ -89,6 +90,8 @@ pub fn cameras() -> Vec<(&'static str, ReferenceCamera, Camera)> {
         ("parallel", ReferenceCamera::orthographic(&parallel), true),
         ("close, askew", towards(close, close + Vec3::new(0.3, 0.15, -0.94), 1.2, false), false),
         ("within", perspective(Vec3::new(0.2, -0.1, 0.3), 1.2, false), false),
+        // Halfway between two axes, so that planes of slices go on behind it.
+        ("within, diagonal", towards(within, within + Vec3::new(1.0, 0.3, 0.6), 1.9, false), false),
     ];
     let host = |(name, camera, parallel): (&'static str, ReferenceCamera, bool)| {
         let seen = Camera { projection: u32::from(parallel), ..gpu::host_camera(&camera, SIZE) };
