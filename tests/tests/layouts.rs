@@ -3,6 +3,7 @@
 //! through encase, and its bytes are looked for at the offset that reflection reports.
 #![allow(clippy::unwrap_used)]
 
+use airlight::ambient::{BentBlur, OcclusionSettings};
 use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
     TonemapParameters, VolumeSpace,
@@ -329,6 +330,12 @@ fn twins() -> BTreeMap<&'static str, Twin> {
     });
     twin!(twins: PictureRows { first: u32, count: u32, reserved_a: u32, reserved_b: u32 });
     twin!(twins: RaySteps { metres: f32, most: u32, reserved_a: u32, reserved_b: u32 });
+    twin!(twins: OcclusionSettings {
+        radius: f32, thickness: f32, bias: f32, samples: u32, steps: u32, side: u32, frame: u32, reserved_a: u32,
+    });
+    twin!(twins: BentBlur {
+        axis: IVec2, taps: i32, reach: f32, least_cosine: f32, reserved_a: f32, reserved_b: f32, reserved_c: f32,
+    });
     twin!(twins: VoxelGrid { size: UVec3, reserved_a: u32 });
     twin!(twins: SolverPart {
         size: UVec3, first_group: u32, laplacian: f32, smallness: f32, oneness: f32, low: f32, high: f32,

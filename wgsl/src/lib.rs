@@ -123,6 +123,11 @@ modules! {
         "transmittance::bounded_map", "transmittance::extinction_map", "transmittance::function_map",
         "transmittance::map_texels", "transmittance::opacity_map", "transmittance::transmittance_moments"
     ],
+    ambient::bent_cone [],
+    ambient::sample_pattern [],
+    ambient::occluders [],
+    ambient::bent_blur [],
+    ambient::seen_surface ["core::camera", "core::finite"],
     painterly::iso_surface ["core::camera", "core::finite"],
     painterly::spline ["painterly::iso_surface"],
     painterly::curvature ["core::camera", "core::finite", "painterly::iso_surface", "painterly::spline"],
@@ -209,6 +214,7 @@ passes! {
     core/brick_distances, core/brick_occupied, core/brick_ranges, core/scan, core/sort,
     core/tonemap,
     core/resolve_depth,
+    core/geometry,
     transmittance/voxels,
     transmittance/check_particles,
     transmittance/splat,
@@ -218,6 +224,10 @@ passes! {
     transmittance/light_particles,
     transmittance/render_particles,
     transmittance/composite,
+    ambient/occlude,
+    ambient/blur_bent,
+    ambient/halve_geometry,
+    ambient/upsample_bent,
     painterly/iso_raycast,
     painterly/shade,
     painterly/solid_bricks,
@@ -285,4 +295,4 @@ passes! {
     stylize/evaluate,
 }
 
-systems![core, transmittance, painterly, inverse, splatting, scattering, stylize];
+systems![core, transmittance, ambient, painterly, inverse, splatting, scattering, stylize];

@@ -3,6 +3,7 @@
 
 mod bricks;
 mod camera;
+mod geometry;
 mod jitter;
 mod light;
 mod light_fit;
@@ -19,6 +20,7 @@ mod volume;
 
 pub use bricks::{BrickThreshold, Bricks, brick_count};
 pub use camera::{Camera, CameraError, DepthRange, OrthographicView, PerspectiveView, View};
+pub use geometry::{Geometry, GeometryPass};
 pub use jitter::{Jitter, blue_noise_texture};
 pub use light::{DIRECTIONAL, Light, LightError, POINT, SPOT, direction_from_angles};
 pub use raster::{Drawing, MeshBuffers, Pictures, Raster, Sky};

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::ambient::bent_blur
+// summary: How much a neighbour counts in a blur that stops at edges.
+// source: thesis 3.4; Laine et al., "Incremental instant radiosity" (2007).
+// note: A neighbour counts by how far it lies from the tangent plane and how alike its normal is, smoothly down to 0.
+
+/// A blur along an axis. 32 bytes.
+struct BentBlur {
+    /// (1, 0) or (0, 1).
+    axis: vec2<i32>,
+    /// Pixels that are averaged, from 1 up: the side of the sampling pattern.
+    taps: i32,
+    /// Metres from the tangent plane at which a neighbour counts no more, above 0.
+    reach: f32,
+    /// Cosine between normals at which a neighbour counts no more, below 1.
+    least_cosine: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+    reserved_c: f32,
+}
+
+/// Weight 0..1 of a neighbour; 1 of a pixel itself.
+fn edge_weight(blur: BentBlur, place: vec3<f32>, normal: vec3<f32>, other: vec3<f32>, other_normal: vec3<f32>) -> f32 {
+    let away = max(abs(dot(other - place, normal)), abs(dot(other - place, other_normal)));
+    let near = clamp(1.0 - away / max(blur.reach, 1e-20), 0.0, 1.0);
+    // Of the difference of the normals, so that normals of any length are alike to themselves.
+    let unlike = 0.5 * dot(normal - other_normal, normal - other_normal);
+    let alike = clamp(1.0 - unlike / max(1.0 - blur.least_cosine, 1e-6), 0.0, 1.0);
+    return near * alike;
+}
