@@ -32,7 +32,8 @@ pub fn outgoing(environment: &Environment, normal: Vec3, samples: &[Sample]) -> 
 /// as long as α is the angle of the cap. Eq. 3.6 gives less than that.
 ///
 /// K needs no sums of its own: K = 2 A ⟨N, n⟩ = 2 A R ⟨N̂, n⟩ for every visibility (see [`Statistics`]), which is Eq. 3.10 with
-/// the bent normal at twice its length rather than normalised. It holds ⟨N̂, n⟩ already.
+/// the bent normal at twice its length rather than normalised. It holds ⟨N̂, n⟩ already. With the exact angle
+/// 2 R = 1 + cos α, so that [`Self::Printed`] and [`Self::Cosine`] then are the same cones, wherever R ≥ 1/2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Brightness {
     /// As Eq. 3.8 and 3.10 have it: A, for cones A ⟨N̂, n⟩, and t = 1 / sin² α.

@@ -97,6 +97,26 @@ fn a_floor_of_triangles_has_no_gaps() {
     }
 }
 
+/// Triangles of a ten-millionth of the scene: f32 cannot even say where they are, but their boxes are wide enough.
+#[test]
+fn small_triangles_are_not_lost_between_the_roundings() {
+    let mut next = numbers(23);
+    let mut point = |size: f64| Vec3::new(next() - 0.5, next() - 0.5, next() - 0.5) * size;
+    let triangles: Vec<Triangle> = (0..500)
+        .map(|_| {
+            let corner = point(4.0);
+            Triangle::flat([corner, corner + point(4e-7), corner + point(4e-7)])
+        })
+        .collect();
+    let scene = Scene::new(triangles.clone());
+    for (i, triangle) in triangles.iter().enumerate() {
+        let middle = weighted(triangle.positions, [1.0 / 3.0; 3]);
+        let eye = point(20.0);
+        let hit = scene.hit(eye, (middle - eye).normalised());
+        assert_eq!(hit.map(|hit| hit.triangle), Some(i));
+    }
+}
+
 #[test]
 fn normals_are_weighted_and_cancelled_ones_replaced() {
     let positions = [Vec3::default(), Vec3::new(0.0, 0.0, 1.0), Vec3::new(1.0, 0.0, 0.0)];

@@ -76,6 +76,7 @@ fn the_geometric_term_is_exact_for_caps_above_the_horizon() {
         near(cones(Brightness::Printed) / truth, 1.0, 4e-3);
         near(cones(Brightness::Uniform) / truth, 1.0 / (1.0 + alpha.cos()), 4e-3);
         near(cones(Brightness::Cosine) / truth, 1.0, 1e-9);
+        near(cones(Brightness::Cosine) / cones(Brightness::Printed), 1.0, 1e-9);
     }
 }
 
