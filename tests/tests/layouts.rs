@@ -27,7 +27,7 @@ use airlight::stylize::{
 use airlight::transmittance::{MediumLighting, SplatTarget};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
-use glam::{Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
+use glam::{IVec2, Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Twins that the host keeps to itself; the tests of the systems named here would fail without them.

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Depth and normals of surfaces in closed form, for tests of the system `ambient`.
+#![allow(dead_code, clippy::unwrap_used)]
+
+use crate::gpu::{self, gpu, shaders};
+use airlight::Texture;
+use airlight::ambient::{BentForm, BentPasses, Blurring, OcclusionSettings, Sampling, SurfaceImages};
+use airlight::core::Camera;
+use airlight_tests::linear::Vec3;
+use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView, View};
+use wgpu::TextureFormat::{R32Float, Rgba32Float};
+
+/// A surface: the distance along a ray of a unit direction from an origin, and the unit normal there.
+pub type Surface<'a> = &'a dyn Fn(Vec3, Vec3) -> Option<(f64, Vec3)>;
+
+/// What a camera sees of a surface.
+pub struct SeenImages {
+    pub reference: ReferenceCamera,
+    pub camera: Camera,
+    pub size: [u32; 2],
+    pub depths: Vec<f32>,
+    pub depth: Texture,
+    pub normals: Texture,
+    /// Where pixels see it, in the world, and its normals.
+    pub surfaces: Vec<Option<(Vec3, Vec3)>>,
+}
+
+/// The pictures of a surface.
+pub fn seen(reference: ReferenceCamera, size: [u32; 2], surface: Surface<'_>) -> SeenImages {
+    let parallel = u32::from(reference.is_orthographic());
+    let camera = Camera { projection: parallel, ..gpu::host_camera(&reference, size) };
+    let [width, height] = size.map(|side| side as usize);
+    let mut depths = Vec::new();
+    let mut normals = Vec::new();
+    let mut surfaces = Vec::new();
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let ndc = ReferenceCamera::pixel_ndc(x, y, width, height);
+        let (origin, direction) = (reference.origin(ndc), reference.ray(ndc));
+        let met =
+            surface(origin, direction).map(|(distance, normal)| (origin + direction * distance, normal));
+        let depth = met.and_then(|(place, _)| reference.project(place)).map_or(reference.far_depth, |p| p[2]);
+        depths.push(depth as f32);
+        let normal = met.map_or([0.0; 3], |(_, normal)| normal.to_array());
+        normals.extend([normal[0] as f32, normal[1] as f32, normal[2] as f32, 1.0]);
+        surfaces.push(met);
+    }
+    let image = |format, values: &[f32]| {
+        let texture = Texture::storage(gpu(), size, format);
+        texture.write(gpu(), values).unwrap();
+        texture
+    };
+    let (depth, normals) = (image(R32Float, &depths), image(Rgba32Float, &normals));
+    SeenImages { reference, camera, size, depths, depth, normals, surfaces }
+}
+
+impl SeenImages {
+    /// As the passes take it.
+    pub fn images(&self) -> SurfaceImages<'_> {
+        SurfaceImages { camera: &self.camera, depth: &self.depth, normals: &self.normals }
+    }
+
+    /// Mean direction and openness of each pixel.
+    pub fn bent(&self, form: BentForm, settings: &OcclusionSettings) -> Vec<(Vec3, f64)> {
+        let passes = BentPasses::new(gpu(), shaders(), form).unwrap();
+        let mut encoder = gpu().encoder();
+        let bent = passes.record(gpu(), &mut encoder, self.images(), settings).unwrap();
+        gpu().submit(encoder).unwrap();
+        let texels = bent.read(gpu()).unwrap();
+        let texel = |t: &[f32]| (Vec3::from([t[0], t[1], t[2]].map(f64::from)), f64::from(t[3]));
+        texels.chunks_exact(4).map(texel).collect()
+    }
+
+    /// The pixel that sees a place.
+    pub fn pixel(&self, place: Vec3) -> usize {
+        let at = self.reference.project(place).unwrap();
+        let column = (0.5 + 0.5 * at[0]) * f64::from(self.size[0]);
+        let row = (0.5 - 0.5 * at[1]) * f64::from(self.size[1]);
+        row as usize * self.size[0] as usize + column as usize
+    }
+}
+
+/// A form without a blur.
+pub fn sharp(sampling: Sampling) -> BentForm {
+    BentForm { sampling, blurring: Blurring::Off, occlusion_only: false, halved: false }
+}
+
+/// All directions in each pixel.
+pub fn many(radius: f32) -> OcclusionSettings {
+    OcclusionSettings { samples: 256, steps: 48, side: 1, bias: 0.01, ..OcclusionSettings::new(radius) }
+}
+
+/// Cameras that look at a place from `eye`: forward and reversed depth, and parallel rays.
+pub fn cameras(eye: Vec3, target: Vec3, half_height: f64) -> [(&'static str, ReferenceCamera); 3] {
+    let up = Vec3::new(0.05, 0.2, 1.0);
+    let away = (target - eye).length();
+    let fov_y = 2.0 * (half_height / away).atan();
+    let (near, far) = (0.05 * away, 3.0 * away);
+    let view = |reversed| View { eye, target, up, fov_y, aspect: 1.0, near, far, reversed };
+    let parallel = OrthographicView { eye, target, up, half_height, aspect: 1.0, depth: far, reversed: true };
+    [
+        ("perspective", ReferenceCamera::perspective(&view(false))),
+        ("reversed", ReferenceCamera::perspective(&view(true))),
+        ("parallel", ReferenceCamera::orthographic(&parallel)),
+    ]
+}
