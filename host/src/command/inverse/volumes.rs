@@ -5,11 +5,11 @@ use super::field::{Field, reduced};
 use super::options::{MediumFlags, Property};
 use crate::command::CommandError;
 use crate::command::error::medium_error;
-use crate::command::volumes::{load_all, voxels};
-use crate::data::{Bounds, Volume, cloud, cloud_bank, load_channels, plume, smoke};
+use crate::command::volumes::{KNOWN, Made, is_array, load_all, voxels};
+use crate::data::{Bounds, Volume, load_channels};
 use crate::inverse::Channels;
 use glam::{Mat4, Vec3};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Optical depth along the longest side of a file, were all of it as dense as its densest voxel.
 const OPTICAL_DEPTH: f32 = 32.0;
@@ -19,29 +19,6 @@ const VOXELS: u32 = 64;
 const SAME_PLACE: f32 = 1e-3;
 /// Greatest emission that is read.
 const MOST_EMISSION: f32 = 1e4;
-
-/// A volume, or what makes it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Source<'a> {
-    Cloud,
-    Clouds,
-    Plume,
-    Smoke,
-    File(&'a Path),
-}
-
-impl<'a> Source<'a> {
-    /// What a name or a path means.
-    pub fn of(volume: &'a Path) -> Self {
-        match volume.to_str() {
-            Some("cloud") => Self::Cloud,
-            Some("clouds") => Self::Clouds,
-            Some("plume") => Self::Plume,
-            Some("smoke") => Self::Smoke,
-            _ => Self::File(volume),
-        }
-    }
-}
 
 /// What is in the box of the volume.
 pub struct Matter {
@@ -67,8 +44,8 @@ impl Matter {
         let volumes = volumes(flags)?;
         let place = volumes[0].world_from_unit;
         let mut field = field(&volumes);
-        let made = !matches!(Source::of(&flags.volume), Source::File(_));
-        let threshold = flags.threshold.unwrap_or(0.0);
+        let made = Made::of(&flags.volume).is_some();
+        let threshold = flags.of_volume.threshold.unwrap_or(0.0);
         let bad = field.values.iter().filter(|value| !value.is_finite() || value.min_element() < 0.0).count();
         for value in &mut field.values {
             *value = clean(*value - threshold, f32::MAX);
@@ -76,7 +53,7 @@ impl Matter {
         let greatest = field.values.iter().map(|value| value.max_element()).fold(0.0, f32::max);
         let longest = edges(place).into_iter().fold(0.0, f32::max);
         let usual = if made || greatest == 0.0 { 1.0 } else { OPTICAL_DEPTH / (longest * greatest) };
-        let scale = flags.extinction_scale.unwrap_or(usual);
+        let scale = flags.of_volume.extinction_scale.unwrap_or(usual);
         for value in &mut field.values {
             *value = reduced((*value * scale).min(Vec3::splat(1e6)), channels);
         }
@@ -122,17 +99,11 @@ fn clean(value: Vec3, most: f32) -> Vec3 {
 }
 
 fn volumes(flags: &MediumFlags) -> Result<Vec<Volume>, CommandError> {
-    let (count, seed) = (flags.voxels.unwrap_or(VOXELS), flags.seed.unwrap_or(1));
-    Ok(match Source::of(&flags.volume) {
-        Source::Cloud => vec![cloud(voxels(count, [6.0, 3.0, 5.0]), seed)],
-        Source::Clouds => vec![cloud_bank(voxels(count, [16.0, 4.0, 16.0]), seed)],
-        Source::Plume => vec![plume(voxels(count, [2.0, 5.0, 2.0]), seed)],
-        Source::Smoke => vec![smoke(voxels(count, [4.0, 3.0, 4.0]), seed)],
-        Source::File(path) => {
-            let known = "cloud, clouds, plume, smoke, or a file that ends in .nii, .nii.gz or .npy";
-            load_all(path, flags.voxel, known)?
-        }
-    })
+    let of = &flags.of_volume;
+    match Made::of(&flags.volume) {
+        Some(made) => Ok(vec![made.volume(of.voxels.unwrap_or(VOXELS), of.seed())]),
+        None => load_all(&flags.volume, of.voxel, KNOWN),
+    }
 }
 
 /// One volume is grey.
@@ -150,7 +121,7 @@ fn field(volumes: &[Volume]) -> Field {
 pub fn placed(flag: &str, path: &PathBuf, place: Mat4) -> Result<Field, CommandError> {
     let known = "a file that ends in .nii, .nii.gz or .npy";
     let volumes = load_channels(path, 1.0).map_err(|error| medium_error(flag, error, known))?;
-    if !crate::command::volumes::is_array(path) {
+    if !is_array(path) {
         let own = volumes[0].world_from_unit;
         let longest = edges(place).into_iter().fold(0.0, f32::max);
         let corners = Bounds { min: Vec3::ZERO, max: Vec3::ONE }.corners();
