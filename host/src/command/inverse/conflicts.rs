@@ -81,6 +81,7 @@ pub fn check(flags: &SolveOptions) -> Result<(), CommandError> {
     let extinction = flags.any(|wanted| wanted == Wanted::Extinction);
     let light = flags.any(|wanted| wanted == Wanted::Light);
     let of_light = "it is of --for light: leave it out";
+    let of_frames = "there are no frames: give --frames A..B, or leave it out";
     for (refused, flag, problem) in [
         (
             extinction && flags.basis == BasisSpelling::Box,
@@ -97,6 +98,13 @@ pub fn check(flags: &SolveOptions) -> Result<(), CommandError> {
             "--hull",
             "masks are seen along straight rays and --refraction bends them: leave it out",
         ),
+        (
+            light && flags.frames.is_some(),
+            "--frames",
+            "light that is solved for is one for all views: leave it out, or solve for light in another run",
+        ),
+        (flags.frames.is_none() && flags.seen_from.is_some(), "--seen-from", of_frames),
+        (flags.frames.is_none() && flags.rate.is_some(), "--rate", of_frames),
         (!light && flags.discs.lights.is_some(), "--lights", of_light),
         (!light && flags.discs.upper, "--upper", of_light),
         (!light && flags.discs.light_strategy.is_some(), "--light-strategy", of_light),

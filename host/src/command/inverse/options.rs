@@ -2,6 +2,7 @@
 //! The flags of `airlight inverse`.
 
 use crate::command::parse;
+use crate::command::sequence::{FrameRange, frames, rate};
 use crate::command::volumes::VolumeFlags;
 use crate::inverse;
 use clap::{Subcommand, ValueEnum};
@@ -30,7 +31,7 @@ pub enum Task {
 }
 
 /// The volume and its light, as both tasks know them.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(
     mut_arg("extinction_scale", |scale| scale.help(
         "Factor from the values of --volume to extinction in 1/m, 0 to 1e6 [default: 1 of volumes that are made; of files optical depth 32 along the longest side, were all of it as dense as its densest voxel]"
@@ -136,6 +137,15 @@ pub struct SolveOptions {
     /// Light that is solved for.
     #[command(flatten)]
     pub discs: DiscFlags,
+    /// Frames A to B, both included, between key frames: views of each time are solved for by themselves, and what was found is blended.
+    #[arg(long, value_name = "A..B", value_parser = frames, allow_hyphen_values = true)]
+    pub frames: Option<FrameRange>,
+    /// With --frames: view from which frames are seen, in its light [default: the first].
+    #[arg(long, value_name = "VIEW")]
+    pub seen_from: Option<String>,
+    /// With --frames: frames a second [default: 24].
+    #[arg(long, value_name = "N", value_parser = rate, allow_hyphen_values = true)]
+    pub rate: Option<f32>,
 }
 
 /// `--channels`.

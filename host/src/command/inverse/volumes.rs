@@ -30,6 +30,8 @@ pub struct Matter {
     pub emission: Field,
     /// 0..1.
     pub albedo: Field,
+    /// From values to 1/m.
+    pub scale: f32,
     /// What is to be said, a line each.
     pub report: Vec<String>,
 }
@@ -72,7 +74,7 @@ impl Matter {
         };
         let emission = property("--emission", &flags.emission, MOST_EMISSION)?;
         let albedo = property("--albedo", &flags.albedo, 1.0)?;
-        Ok(Self { place, extinction: field, emission, albedo, report })
+        Ok(Self { place, extinction: field, emission, albedo, scale, report })
     }
 
     /// The box around it in the world, metres.
@@ -91,6 +93,18 @@ pub fn edges(place: Mat4) -> [f32; 3] {
 /// Voxels of a volume in such a place with `count` along its longest side.
 pub fn voxels_of(place: Mat4, count: u32) -> [u32; 3] {
     voxels(count, edges(place))
+}
+
+/// Greatest distance of the corners of two boxes, metres.
+fn apart(one: Mat4, other: Mat4) -> f32 {
+    let corners = Bounds { min: Vec3::ZERO, max: Vec3::ONE }.corners();
+    let apart = corners.map(|corner| one.transform_point3(corner).distance(other.transform_point3(corner)));
+    apart.into_iter().fold(0.0, f32::max)
+}
+
+/// Whether a volume lies where another does, but for rounding.
+pub fn same_place(own: Mat4, place: Mat4) -> bool {
+    apart(own, place) <= SAME_PLACE * edges(place).into_iter().fold(0.0, f32::max)
 }
 
 /// From 0 to the most; 0 where it is no number.
@@ -123,12 +137,8 @@ pub fn placed(flag: &str, path: &PathBuf, place: Mat4) -> Result<Field, CommandE
     let volumes = load_channels(path, 1.0).map_err(|error| medium_error(flag, error, known))?;
     if !is_array(path) {
         let own = volumes[0].world_from_unit;
-        let longest = edges(place).into_iter().fold(0.0, f32::max);
-        let corners = Bounds { min: Vec3::ZERO, max: Vec3::ONE }.corners();
-        let apart =
-            corners.map(|corner| own.transform_point3(corner).distance(place.transform_point3(corner)));
-        let most = apart.into_iter().fold(0.0, f32::max);
-        if most > SAME_PLACE * longest {
+        if !same_place(own, place) {
+            let most = apart(own, place);
             return Err(CommandError::failure(format!(
                 "{flag}: {} lies elsewhere than --volume, up to {most} m apart: resample it to the same box, or give a .npy, which has no place",
                 path.display()
