@@ -51,7 +51,7 @@ fn flags_that_cannot_be_meant_are_refused() {
     render("--volume box.npy --seed 9", 2, &["--seed"]);
     render("--volume cloud --voxel 9", 2, &["--voxel", ".npy"]);
     render("--volume cloud --voxels 3", 2, &["--voxels", "3"]);
-    render("--extinction-scale -1", 2, &["--extinction-scale", "0 to 1000000"]);
+    render("--extinction-scale -1", 2, &["--extinction-scale", "0 to 1e6"]);
     render("--ambient -1", 2, &["--ambient", "0 to 10000"]);
     render("--emission -1", 2, &["--emission", "0 to 10000"]);
     render("--albedo 0,1,1.5", 2, &["--albedo", "0 to 1 "]);

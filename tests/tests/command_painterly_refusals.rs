@@ -9,14 +9,8 @@ mod lumps;
 #[path = "support/npy.rs"]
 mod npy;
 
-use command::{airlight_with, folder, refuses, succeeds, words};
+use command::{airlight_with, refuses, succeeds, words};
 use std::path::Path;
-
-fn lumps() -> tempfile::TempDir {
-    let at = folder();
-    lumps::write(&at.path().join("lumps.npy"));
-    at
-}
 
 fn typed(flags: &str) -> String {
     let volume = if flags.contains("--volume") { "" } else { "--volume lumps.npy" };
@@ -62,7 +56,7 @@ fn nifti(sides: &[i16], big: bool) -> Vec<u8> {
 
 #[test]
 fn volumes_that_cannot_be_are_refused() {
-    let at = lumps();
+    let at = lumps::folder();
     let at = at.path();
     let bad = |flags: &str, code: i32, parts: &[&str]| refused(at, flags, code, parts);
     refuses(at, &words("painterly --out out"), 2, &["--volume"]);
@@ -118,7 +112,7 @@ fn volumes_that_cannot_be_are_refused() {
 
 #[test]
 fn volumes_beyond_the_limit_are_refused_with_a_remedy() {
-    let at = lumps();
+    let at = lumps::folder();
     let at = at.path();
     for (shape, remedy) in
         [([1, 1, 2049], "--downsample 2"), ([5000, 1, 1], "--downsample 3"), ([1, 140_000, 1], "crop it")]
@@ -135,7 +129,7 @@ const POINT: &str = "[[point]]\nvalue = 0.5\ncolor = '#ffffff'\nopacity = 1\n";
 
 #[test]
 fn files_of_looks_that_cannot_be_are_refused() {
-    let at = lumps();
+    let at = lumps::folder();
     let at = at.path();
     let bad = |flags: &str, code: i32, parts: &[&str]| refused(at, flags, code, parts);
     let write = |name: &str, text: &str| std::fs::write(at.join(name), text).unwrap();
@@ -196,7 +190,7 @@ fn checksum(bytes: &[u8]) -> u32 {
 
 #[test]
 fn numbers_that_cannot_be_meant_are_refused() {
-    let at = lumps();
+    let at = lumps::folder();
     let bad = |flags: &str, parts: &[&str]| refused(at.path(), flags, 2, parts);
     for iso in ["0", "-0.5", "1.5"] {
         bad(&format!("--iso {iso}"), &["--iso", iso, "above 0, at most 1"]);
@@ -252,7 +246,7 @@ fn numbers_that_cannot_be_meant_are_refused() {
 
 #[test]
 fn flags_that_cannot_be_meant_together_are_refused() {
-    let at = lumps();
+    let at = lumps::folder();
     let at = at.path();
     let bad = |flags: &str, parts: &[&str]| refused(at, flags, 2, parts);
     for light in ["spot:0,4,0,0,0,0.1,30", "point:0,3,0"] {
@@ -267,7 +261,7 @@ fn flags_that_cannot_be_meant_together_are_refused() {
 
 #[test]
 fn folders_that_cannot_be_written_are_refused() {
-    let at = lumps();
+    let at = lumps::folder();
     let at = at.path();
     std::fs::write(at.join("file"), "").unwrap();
     std::fs::create_dir_all(at.join("taken/painting.png")).unwrap();
@@ -282,7 +276,7 @@ fn folders_that_cannot_be_written_are_refused() {
 /// What only the device knows: nothing is left of what was begun.
 #[test]
 fn buffers_beyond_the_device_are_refused() {
-    let at = lumps();
+    let at = lumps::folder();
     let at = at.path();
     for capacity in ["0", "4000000000"] {
         let line = typed(&format!("--capacity {capacity}"));

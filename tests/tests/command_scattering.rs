@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! `airlight scattering` with every light and every input, each against a march of the same setup. Flags that cannot
-//! be meant are tested in `command_scattering_refusals.rs`, bad files and numbers in `command.rs`.
+//! `airlight scattering` with every light and every input, each against a march of the same setup. What flags do
+//! is tested in `command_scattering_flags.rs`, flags that cannot be meant in `command_scattering_refusals.rs`, bad files and numbers in `command.rs`.
 //!
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]
@@ -9,91 +9,21 @@
 mod command;
 #[path = "support/hall.rs"]
 mod hall;
+#[path = "support/hall_runs.rs"]
+mod hall_runs;
 #[path = "support/npy.rs"]
 mod npy;
 
 use airlight_tests::error::relative_rmse;
-use command::{files, succeeds};
-use glam::Vec3;
 use hall::{EYE, scene};
-use std::collections::BTreeMap;
+use hall_runs::{Run, SIZE, SUN};
 use std::path::Path;
 
-const SIZE: [usize; 2] = [96, 64];
 /// Setups with a light each.
-const SUN: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light directional:95,35";
 const SPOT: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light spot:-2,4,1,0,0.5,0,30";
 const POINT: &str = "--eye 0.5,1.2,6 --target 0,1.1,0 --light point:-1.5,1.5,0.5";
 const ORTHOGRAPHIC: &str =
     "--camera orthographic --eye 0.5,2,6 --target 0,1.1,0 --height 5 --near 1 --far 14";
-
-/// What a run left behind.
-struct Run {
-    said: String,
-    buffers: BTreeMap<String, (Vec<usize>, Vec<f32>)>,
-}
-
-impl Run {
-    /// Runs the command at a small size.
-    #[track_caller]
-    fn new(at: &Path, mesh: &str, flags: &str) -> Self {
-        let folder = tempfile::tempdir_in(at).unwrap();
-        let [out, buffers] = ["picture.exr", "buffers"].map(|name| folder.path().join(name));
-        let (out, buffers) = (out.to_str().unwrap(), buffers.to_str().unwrap());
-        let own = "--size 96x64 --map 128x128 --shadow-map 256x256 --extinction 0.08 --g 0.3";
-        let mut arguments = vec!["scattering", "--mesh", mesh, "--out", out, "--buffers", buffers];
-        let flags_of_own: Vec<&str> = own.split(' ').collect();
-        let given: Vec<&str> = flags.split(' ').filter(|flag| !flag.is_empty()).collect();
-        let kept = flags_of_own.chunks(2).filter(|pair| !given.contains(&pair[0]));
-        arguments.extend(kept.flatten().chain(&given));
-        let said = succeeds(at, &arguments).out;
-        let arrays = files(Path::new(buffers)).into_keys();
-        let name = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
-        let values = |path: &Path| {
-            if npy::read(path).descr != "<u4" {
-                return npy::read_f32(path);
-            }
-            let (shape, words) = npy::read_u32(path);
-            (shape, words.into_iter().map(|word| word as f32).collect())
-        };
-        let buffers: BTreeMap<_, _> = arrays.map(|path| (name(&path), values(&path))).collect();
-        for (name, (_, values)) in &buffers {
-            // Two integers among the words of `rows` are no floats.
-            let finite = values.iter().all(|value| value.is_finite());
-            assert!(finite, "{flags}: {name} is not finite");
-        }
-        let picture = image::open(out).unwrap().into_rgba32f();
-        let eyes = buffers.keys().filter(|name| name.ends_with("composed")).count();
-        assert_eq!(
-            [picture.width() as usize, picture.height() as usize],
-            [SIZE[0] * eyes, SIZE[1]],
-            "{flags}"
-        );
-        for (eye, name) in buffers.keys().filter(|name| name.ends_with("composed")).enumerate() {
-            let composed = &buffers[name].1;
-            for y in 0..SIZE[1] {
-                let row = 4 * (y * eyes + eye) * SIZE[0];
-                let written = &picture.as_raw()[row..row + 4 * SIZE[0]];
-                let shown = &composed[4 * y * SIZE[0]..4 * (y + 1) * SIZE[0]];
-                let same = written.iter().zip(shown).enumerate().all(|(i, (a, b))| i % 4 == 3 || a == b);
-                assert!(same, "{flags}: row {y} of {name} is not that of the picture");
-            }
-        }
-        Self { said, buffers }
-    }
-
-    fn reason(&self) -> &str {
-        self.said.lines().find_map(|line| line.strip_prefix("rectification: ")).unwrap()
-    }
-
-    fn radiance(&self, name: &str) -> Vec<f32> {
-        self.buffers[name].1.chunks_exact(4).flat_map(|texel| texel[..3].to_vec()).collect()
-    }
-
-    fn visibility(&self, name: &str) -> Vec<f32> {
-        self.buffers[name].1.chunks_exact(4).map(|texel| texel[3]).collect()
-    }
-}
 
 /// Runs a setup by rows, `own` being flags that a march has none of, and by a march of 512 steps; the first must have
 /// chosen the rows `reason` and agree within `tolerance`, which the shadows are well above.
@@ -298,128 +228,5 @@ fn light_before_the_near_plane_is_left_out() {
         println!("near plane {own}: {error:.4}, the stretch before it {changed:.3}");
         assert!(error < 0.03, "{own}: {error}");
         assert!(changed > 0.1, "the stretch before the plane is {changed} only");
-    }
-}
-
-#[test]
-fn two_eyes_see_what_each_would() {
-    let at = scene();
-    let at = at.path();
-    // The camera's right is +x turned towards -z, seen from (0.5, 1.2, 6) at (0, 1.1, 0).
-    let look = Vec3::new(-0.5, -0.1, -6.0);
-    let right = look.cross(Vec3::Y).normalize() * 0.2;
-    for (light, method, reason) in [
-        ("directional:95,35", "auto", "epipolar (rank queries need"),
-        ("directional:95,35", "fourier", "projective"),
-        ("spot:-2,4,1,0,0.5,0,30", "auto", "epipolar (rows of a spot"),
-    ] {
-        let own = format!("--light {light} --method {method} --radiance 20,20,20 --near 0.05 --far 14");
-        let both = Run::new(at, "hall.obj", &format!("{EYE} {own} --stereo 0.4"));
-        assert!(both.reason().starts_with(reason), "{}", both.said);
-        for (name, side) in [("left_", -right), ("right_", right)] {
-            let eye = Vec3::new(0.5, 1.2, 6.0) + side;
-            let target = eye + look;
-            let at_eye = format!(
-                "--eye {},{},{} --target {},{},{}",
-                eye.x, eye.y, eye.z, target.x, target.y, target.z
-            );
-            let one = Run::new(at, "hall.obj", &format!("{at_eye} {own}"));
-            for buffer in ["scattered", "composed", "rectified"] {
-                let [both, one] = [&both.buffers[&format!("{name}{buffer}")], &one.buffers[buffer]];
-                let error = relative_rmse(&both.1, &one.1);
-                println!("{light} {name}{buffer}: {error:.1e}");
-                assert!(error < 0.01, "{light} {name}{buffer}: {error}");
-            }
-        }
-        let [left, right] = ["left_", "right_"].map(|name| both.radiance(&format!("{name}scattered")));
-        assert!(relative_rmse(&left, &right) > 0.03, "both eyes see the same");
-    }
-}
-
-#[test]
-fn flags_of_the_filter_reach_it() {
-    let at = scene();
-    let setup = format!("{SUN} --rectification epipolar --extinction 0.2");
-    let run = |own: &str| Run::new(at.path(), "hall.obj", &format!("{setup}{own}")).buffers;
-    for (method, flag, changed) in [
-        ("fourier", " --reference optimum", "slices"),
-        ("fourier", " --regions 3", "bases"),
-        ("fourier", " --average", "bases"),
-        ("fourier", " --half", "bases"),
-        ("fourier", " --bases 16", "bases"),
-        ("rank", " --bits 10", "rank_starts"),
-        ("rank", " --average", "rank_cells"),
-        ("wavelet --average", " --bits 10", "wavelet"),
-        ("moments", " --average", "moments"),
-    ] {
-        let method = format!(" --method {method}");
-        let [plain, other] = ["", flag].map(|flag| run(&format!("{method}{flag}")));
-        assert!(other[changed] != plain[changed], "{flag} does not change {changed}");
-    }
-    // Flags of Fourier bases ask for them.
-    for flag in [" --bases 16", " --half", " --regions 2"] {
-        assert!(run(flag).contains_key("bases"), "{flag}");
-    }
-    assert!(run("").contains_key("rank_cells"));
-}
-
-#[test]
-fn jitter_moves_samples_and_the_frame_moves_them_again() {
-    let at = scene();
-    let at = at.path();
-    let run = |flags: &str| Run::new(at, "hall.obj", &format!("{SUN} --method march {flags}"));
-    let exact = run("--steps 512").radiance("scattered");
-    let plain = run("--steps 8").radiance("scattered");
-    for jitter in ["gradient", "blue-noise"] {
-        let [first, again, second] = ["", " --frame 0", " --frame 1"]
-            .map(|frame| run(&format!("--steps 8 --jitter {jitter}{frame}")).radiance("scattered"));
-        assert!(first == again && first != second && first != plain, "{jitter}");
-        for picture in [&first, &second] {
-            let error = relative_rmse(picture, &exact);
-            println!("{jitter}: {error:.4}");
-            assert!(error < 0.15, "{jitter}: {error}");
-        }
-    }
-}
-
-#[test]
-fn the_rows_are_told_unless_quiet() {
-    let at = scene();
-    let run = |flags: &[&str]| {
-        let own = ["scattering", "--mesh", "hall.obj", "--out", "x.png", "--size", "32x24", "--map", "64x64"];
-        succeeds(at.path(), &[&own[..], flags].concat()).out
-    };
-    let told = run(&[]);
-    assert_eq!(told.lines().count(), 2, "{told}");
-    assert!(told.starts_with("rectification: ") && told.ends_with("x.png\n"), "{told}");
-    assert_eq!(run(&["--quiet"]), "");
-}
-
-#[test]
-fn awkward_sizes_draw() {
-    let at = scene();
-    for flags in [
-        "--size 1x1 --map 1x1 --shadow-map 1x1 --bases 4 --splits 4",
-        "--size 5x3 --map 2x3 --shadow-map 1x1 --bases 4 --regions 8 --resolution quarter",
-        "--size 1x1 --map 3x1 --bases 4 --light point:0,3,0 --resolution half",
-        "--size 3x2 --map 1x2 --bases 4 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png",
-        "--size 1x1 --map 1x1 --shadow-map 1x1 --method rank",
-        "--size 5x3 --map 33x2 --shadow-map 1x1 --method rank --bits 8 --resolution quarter --start near-plane",
-        "--size 3x2 --map 33x2 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png --method rank",
-        "--size 3x2 --map 33x2 --shadow-map 2x2 --light point:0,3,0 --method rank --bits 8",
-        "--size 3x2 --map 31x2 --shadow-map 2x2 --rectification projective --splits 4",
-        "--size 3x2 --map 1x2 --shadow-map 1x2 --method moments --start near-plane",
-        "--size 3x2 --map 1x2 --shadow-map 1x2 --light spot:0,4,0,0,0,0.1,30 --light-texture glass.png --method moments",
-        "--size 3x2 --map 9x2 --shadow-map 2x2 --light point:0,3,0 --method moments",
-        "--size 3x2 --map 31x2 --shadow-map 2x2 --rectification projective --method moments --splits 4",
-        "--size 3x5 --map 65x2 --shadow-map 1x1 --method wavelet --average --bits 10 --start near-plane",
-        // Wider than rank queries take: bases.
-        "--size 3x2 --map 2049x2 --shadow-map 2x2",
-    ] {
-        let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr"];
-        arguments.extend(flags.split(' '));
-        succeeds(at.path(), &arguments);
-        let picture = image::open(at.path().join("x.exr")).unwrap().into_rgba32f();
-        assert!(picture.as_raw().iter().all(|value| value.is_finite()), "{flags}");
     }
 }

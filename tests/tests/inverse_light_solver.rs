@@ -6,6 +6,8 @@
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/inverse.rs"]
+mod inverse;
 
 use airlight::core::Camera;
 use airlight::data::disc_lights;
@@ -15,12 +17,13 @@ use airlight::inverse::{
 };
 use airlight::{Lighting, Texture};
 use airlight_tests::linear::Vec3;
-use airlight_tests::reference::camera::{Camera as ReferenceCamera, View as Perspective};
+use airlight_tests::reference::camera::Camera as ReferenceCamera;
 use airlight_tests::reference::inverse::{
     Grid, Matrix, Problem, Regulariser, Slices, View, VolumeBox, bounded, light_columns, straight,
 };
 use glam::{Mat4, Quat};
 use gpu::{Random, gpu, shaders};
+use inverse::cameras_about;
 use std::sync::Arc;
 
 const EXTINCTION: [u32; 3] = [14, 12, 13];
@@ -70,29 +73,8 @@ fn grid(size: [u32; 3], values: &[f32], channels: Channels, channel: usize) -> G
 }
 
 fn cameras() -> Vec<(ReferenceCamera, Camera)> {
-    let aspect = f64::from(VIEW[0]) / f64::from(VIEW[1]);
-    let eyes = [
-        Vec3::new(0.3, 0.4, 4.0),
-        Vec3::new(3.6, -1.2, 0.9),
-        Vec3::new(-2.4, 1.9, -2.2),
-        Vec3::new(-1.0, -3.4, 1.0),
-    ];
-    let camera = |eye: Vec3| {
-        let (target, up) = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
-        let (near, far, reversed) = (0.01, 30.0, true);
-        let camera = ReferenceCamera::perspective(&Perspective {
-            eye,
-            target,
-            up,
-            fov_y: 0.65,
-            aspect,
-            near,
-            far,
-            reversed,
-        });
-        (camera, gpu::host_camera(&camera, VIEW))
-    };
-    eyes.into_iter().map(camera).collect()
+    let eyes = [[0.3, 0.4, 4.0], [3.6, -1.2, 0.9], [-2.4, 1.9, -2.2], [-1.0, -3.4, 1.0]];
+    cameras_about(&eyes, 0.65, VIEW)
 }
 
 /// Pictures that are wanted of each view, and weights of their pixels.

@@ -6,6 +6,8 @@
 
 #[path = "support/gpu.rs"]
 mod gpu;
+#[path = "support/inverse.rs"]
+mod inverse;
 
 use airlight::Texture;
 use airlight::core::Camera;
@@ -13,14 +15,14 @@ use airlight::inverse::{
     Basis, Channels, Fields, InverseError, Medium, Projector, ProjectorForm, Regulariser, SliceView, Solved,
     Solver, Target, Transpose, Unknown,
 };
-use airlight_tests::linear::Vec3;
-use airlight_tests::reference::camera::{Camera as ReferenceCamera, View as Perspective};
+use airlight_tests::reference::camera::Camera as ReferenceCamera;
 use airlight_tests::reference::inverse::{
     Basis as ReferenceBasis, Grid, Matrix, Medium as ReferenceMedium, Part, Problem, Property,
     Regulariser as ReferenceRegulariser, Slices, View, VolumeBox, bounded, straight, touched,
 };
 use glam::Mat4;
 use gpu::{Random, gpu, shaders};
+use inverse::cameras_about;
 use std::sync::Arc;
 
 const EXTINCTION: [u32; 3] = [8, 7, 6];
@@ -51,24 +53,7 @@ fn placed() -> Mat4 {
 }
 
 fn cameras() -> Vec<(ReferenceCamera, Camera)> {
-    let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
-    let eyes = [Vec3::new(0.3, 0.4, 4.0), Vec3::new(3.6, 0.8, 0.9), Vec3::new(-2.4, 1.9, 2.2)];
-    let camera = |eye: Vec3| {
-        let (target, up) = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
-        let (near, far, reversed) = (0.01, 30.0, true);
-        let camera = ReferenceCamera::perspective(&Perspective {
-            eye,
-            target,
-            up,
-            fov_y: 0.6,
-            aspect,
-            near,
-            far,
-            reversed,
-        });
-        (camera, gpu::host_camera(&camera, SIZE))
-    };
-    eyes.into_iter().map(camera).collect()
+    cameras_about(&[[0.3, 0.4, 4.0], [3.6, 0.8, 0.9], [-2.4, 1.9, 2.2]], 0.6, SIZE)
 }
 
 /// A problem for both sides.

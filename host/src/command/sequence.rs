@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Numbered frames and their time.
 
+use super::CommandError;
+use crate::formats::{WriteError, write_animation, write_png};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Frames of a sequence at most.
@@ -15,6 +18,13 @@ pub struct FrameRange {
     pub first: u32,
     /// How many, at least one.
     pub count: u32,
+}
+
+impl FrameRange {
+    /// The last.
+    pub fn last(self) -> u32 {
+        self.first + (self.count - 1)
+    }
 }
 
 /// `A..B`.
@@ -59,6 +69,35 @@ pub fn delay(rate: f32) -> [u16; 2] {
 pub fn numbered(out: &Path, frame: u32) -> PathBuf {
     let part = |name: Option<&std::ffi::OsStr>| name.unwrap_or_default().to_string_lossy().into_owned();
     out.with_file_name(format!("{}.{frame:04}.{}", part(out.file_stem()), part(out.extension())))
+}
+
+/// Writes frames as [`numbered`] pictures beside `out`, an animated PNG of them. `picture`: pixels of a frame, 3 or 4 bytes each.
+///
+/// # Errors
+/// The first of `picture`; a failure where a file cannot be written.
+pub fn write_frames(
+    out: &Path,
+    [width, height]: [u32; 2],
+    frames: FrameRange,
+    rate: Option<f32>,
+    mut picture: impl FnMut(u32) -> Result<Vec<u8>, CommandError>,
+) -> Result<(), CommandError> {
+    let failed = |error: WriteError| CommandError::failure(format!("--out: {error}"));
+    let mut problem = None;
+    let pictures = (0..frames.count as usize).map(|index| {
+        let frame = frames.first + index as u32;
+        let written = picture(frame).and_then(|pixels| {
+            write_png(numbered(out, frame), width, height, &pixels).map_err(failed)?;
+            Ok(pixels)
+        });
+        written.map_err(|error| {
+            problem = Some(error);
+            io::Error::other("a frame could not be made")
+        })
+    });
+    let written = write_animation(out, width, height, pictures, delay(rate.unwrap_or(RATE)));
+    problem.map_or(Ok(()), Err)?;
+    written.map_err(failed)
 }
 
 #[cfg(test)]

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! `--volume`: files of volumes, and the number of voxels of those that are made.
+//! `--volume`: files of volumes, those that are made, and the flags of both.
+
+mod flags;
+mod made;
+
+pub use flags::VolumeFlags;
+pub use made::{KNOWN, Made, SEED_OF_FILES};
 
 use super::CommandError;
 use super::error::medium_error;

@@ -1,165 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The camera uniform of `core/camera`, and cameras built from what people say.
 
+mod error;
+mod view;
+
+pub use error::CameraError;
+pub use view::{DepthRange, OrthographicView, PerspectiveView, View};
+
 use encase::ShaderType;
-use glam::dcamera::rh::{proj::directx, view};
+use glam::dcamera::rh::{proj::directx, view as looking};
 use glam::{DMat4, DVec3, Mat4, Vec2, Vec3};
-
-/// What makes a camera impossible.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CameraError {
-    /// Eye and target coincide, or one of them is not finite.
-    #[error("eye {eye} and target {target} give no direction: they must be finite and apart")]
-    Direction {
-        /// Position of the eye.
-        eye: Vec3,
-        /// Point looked at.
-        target: Vec3,
-    },
-    /// What should be up runs along the view, or is no direction.
-    #[error("up {up} is impossible: it must be finite, not zero, and not along the view from eye to target")]
-    Up {
-        /// What should be up.
-        up: Vec3,
-    },
-    /// The field of view is not an angle that a picture can have.
-    #[error("field of view {degrees} degrees is impossible: it must lie between 0.1 and 170")]
-    FieldOfView {
-        /// The vertical angle, in degrees.
-        degrees: f32,
-    },
-    /// The depth range is empty.
-    #[error("near plane {near} m and far plane {far} m are impossible: 0 < near < far is needed")]
-    Planes {
-        /// Distance of the near plane.
-        near: f32,
-        /// Distance of the far plane.
-        far: f32,
-    },
-    /// The depth range of an orthographic view is empty.
-    #[error(
-        "near plane {near} m and far plane {far} m are impossible for an orthographic view: \
-         near < far is needed, both finite"
-    )]
-    OrthographicPlanes {
-        /// Distance of the near plane.
-        near: f32,
-        /// Distance of the far plane.
-        far: f32,
-    },
-    /// An orthographic picture has no height.
-    #[error(
-        "a picture of {0} m is impossible: the height of an orthographic view must be positive and finite"
-    )]
-    Height(f32),
-    /// The picture has no pixels.
-    #[error("a picture of {width}x{height} pixels is impossible: both must be at least 1")]
-    Viewport {
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-    },
-}
-
-/// Which way clip depth runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum DepthRange {
-    /// Near 0, far 1.
-    #[default]
-    Forward,
-    /// Near 1, far 0.
-    Reversed,
-}
-
-/// A perspective view in the words of a person. World in metres, y up.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PerspectiveView {
-    /// Position of the eye.
-    pub eye: Vec3,
-    /// Point in the middle of the picture.
-    pub target: Vec3,
-    /// Vertical field of view, degrees.
-    pub field_of_view: f32,
-    /// Distance of the near plane, metres.
-    pub near: f32,
-    /// Distance of the far plane, metres; may be infinite.
-    pub far: f32,
-    /// Which way clip depth runs.
-    pub depth: DepthRange,
-}
-
-/// An orthographic view in the words of a person. World in metres, y up.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OrthographicView {
-    /// Where distances of the planes are measured from.
-    pub eye: Vec3,
-    /// Point in the middle of the picture.
-    pub target: Vec3,
-    /// Height of the picture, metres.
-    pub height: f32,
-    /// Distance of the near plane, metres; negative behind the eye.
-    pub near: f32,
-    /// Distance of the far plane, metres, finite.
-    pub far: f32,
-    /// Which way clip depth runs.
-    pub depth: DepthRange,
-}
-
-/// A view of either kind.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum View {
-    /// View rays leave the eye.
-    Perspective(PerspectiveView),
-    /// View rays are parallel.
-    Orthographic(OrthographicView),
-}
-
-impl From<PerspectiveView> for View {
-    fn from(view: PerspectiveView) -> Self {
-        Self::Perspective(view)
-    }
-}
-
-impl From<OrthographicView> for View {
-    fn from(view: OrthographicView) -> Self {
-        Self::Orthographic(view)
-    }
-}
-
-impl View {
-    /// Distance of the far plane, metres.
-    pub fn far(&self) -> f32 {
-        match self {
-            Self::Perspective(view) => view.far,
-            Self::Orthographic(view) => view.far,
-        }
-    }
-
-    /// The perspective view, if it is one.
-    pub fn perspective(&self) -> Option<PerspectiveView> {
-        match self {
-            Self::Perspective(view) => Some(*view),
-            Self::Orthographic(_) => None,
-        }
-    }
-
-    /// Position of the eye.
-    pub fn eye(&self) -> Vec3 {
-        match self {
-            Self::Perspective(view) => view.eye,
-            Self::Orthographic(view) => view.eye,
-        }
-    }
-
-    /// Point in the middle of the picture.
-    pub fn target(&self) -> Vec3 {
-        match self {
-            Self::Perspective(view) => view.target,
-            Self::Orthographic(view) => view.target,
-        }
-    }
-}
 
 /// The uniform `Camera` of `core/camera`.
 #[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
@@ -292,7 +142,7 @@ impl Camera {
 fn look(eye: Vec3, target: Vec3) -> Result<DMat4, CameraError> {
     let forward = forward(eye, target)?;
     let up = if forward.cross(DVec3::Y).length() < 1e-4 { DVec3::NEG_Z } else { DVec3::Y };
-    Ok(view::look_to_mat4(eye.as_dvec3(), forward, up))
+    Ok(looking::look_to_mat4(eye.as_dvec3(), forward, up))
 }
 
 fn look_up(eye: Vec3, target: Vec3, up: Vec3) -> Result<DMat4, CameraError> {
@@ -301,7 +151,7 @@ fn look_up(eye: Vec3, target: Vec3, up: Vec3) -> Result<DMat4, CameraError> {
     if !(up.is_finite() && forward.cross(along).length() > 1e-4) {
         return Err(CameraError::Up { up });
     }
-    Ok(view::look_to_mat4(eye.as_dvec3(), forward, along))
+    Ok(looking::look_to_mat4(eye.as_dvec3(), forward, along))
 }
 
 fn forward(eye: Vec3, target: Vec3) -> Result<DVec3, CameraError> {

@@ -100,6 +100,19 @@ pub fn cameras() -> Vec<(&'static str, ReferenceCamera, Camera)> {
     all.into_iter().map(host).collect()
 }
 
+/// Cameras with reversed depth that look at the middle, upright, from several eyes (metres). `fov_y`: radians; `size`: pixels.
+pub fn cameras_about(eyes: &[[f64; 3]], fov_y: f64, size: [u32; 2]) -> Vec<(ReferenceCamera, Camera)> {
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let camera = |[x, y, z]: &[f64; 3]| {
+        let (target, up) = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
+        let (eye, near, far, reversed) = (Vec3::new(*x, *y, *z), 0.01, 30.0, true);
+        let view = Perspective { eye, target, up, fov_y, aspect, near, far, reversed };
+        let camera = ReferenceCamera::perspective(&view);
+        (camera, gpu::host_camera(&camera, size))
+    };
+    eyes.iter().map(camera).collect()
+}
+
 pub fn placed() -> Mat4 {
     Mat4::from_rotation_translation(Quat::from_rotation_y(0.4) * Quat::from_rotation_x(0.2), glam::Vec3::ZERO)
         * Mat4::from_scale(glam::Vec3::new(2.0, 1.6, 1.8))

@@ -28,6 +28,13 @@ pub fn values() -> Vec<f32> {
     values
 }
 
+/// A folder with the volume `lumps.npy`.
+pub fn folder() -> tempfile::TempDir {
+    let at = tempfile::tempdir().unwrap();
+    write(&at.path().join("lumps.npy"));
+    at
+}
+
 /// Writes it.
 pub fn write(path: &Path) {
     npy::write_f32(path, &SHAPE, &values());

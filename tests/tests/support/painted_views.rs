@@ -3,7 +3,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 #[path = "npy.rs"]
-mod npy;
+pub mod npy;
 
 use std::fmt::Write;
 use std::path::Path;

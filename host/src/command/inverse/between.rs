@@ -76,7 +76,7 @@ mod tests {
             view("d", "eye = [0, 0, 4], field_of_view = 30, up = [1, 0, 0]"),
             view("e", "eye = [0, 0, 4], field_of_view = 30, up = [-1, 0, 0]"),
         ];
-        let views = parse_views("v.toml", &text.concat()).unwrap();
+        let views = parse_views("v.toml", &text.concat()).unwrap().list;
         let eye = |i: usize, j: usize| between(&views[i], &views[j]).unwrap().eye;
         assert!(eye(0, 1).distance(Vec3::new(5.0, 0.0, 5.0) * 0.5_f32.sqrt()) < 1e-5, "{}", eye(0, 1));
         assert!(eye(0, 2).distance(Vec3::new(4.0, 0.0, 0.0)) < 1e-5, "{}", eye(0, 2));

@@ -4,10 +4,9 @@
 use super::error::SolveError;
 use super::options::{BasisSpelling, LightFlags, MediumFlags, Property, SolveOptions, Wanted};
 use super::views::ViewDescription;
-use super::volumes::Source;
 use crate::command::CommandError;
 use crate::command::parse::{LightSpelling, NO_AREA};
-use crate::command::volumes::is_array;
+use crate::command::volumes::{Made, SEED_OF_FILES, is_array};
 use glam::Vec3;
 
 /// Checks what the flags of the medium say.
@@ -15,34 +14,23 @@ use glam::Vec3;
 /// # Errors
 /// Misuse.
 pub fn check_medium(flags: &MediumFlags) -> Result<(), CommandError> {
-    let made = !matches!(Source::of(&flags.volume), Source::File(_));
-    for (refused, flag, problem) in [
-        (
-            !is_array(&flags.volume) && flags.voxel.is_some(),
-            "--voxel",
-            "it is of .npy files of --volume: leave it out",
-        ),
-        (
-            !made && flags.voxels.is_some(),
-            "--voxels",
-            "it is of --volume cloud, clouds, plume and smoke: leave it out, or give --resolution",
-        ),
-        (
-            !made && flags.seed.is_some(),
-            "--seed",
-            "files are as they are: leave it out, or take cloud, clouds, plume or smoke",
-        ),
-        (
-            flags.refraction.is_none() && flags.refraction_step.is_some(),
-            "--refraction-step",
-            "rays are straight: leave it out, or give --refraction",
-        ),
-    ] {
+    let made = Made::of(&flags.volume).is_some();
+    let files = flags.of_volume.rules(
+        is_array(&flags.volume),
+        (made, "it is of --volume cloud, clouds, plume and smoke: leave it out, or give --resolution"),
+        (made, SEED_OF_FILES),
+    );
+    let straight = (
+        flags.refraction.is_none() && flags.refraction_step.is_some(),
+        "--refraction-step",
+        "rays are straight: leave it out, or give --refraction",
+    );
+    for (refused, flag, problem) in files.into_iter().chain([straight]) {
         if refused {
             return Err(CommandError::misuse(flag, problem));
         }
     }
-    number("--extinction-scale", flags.extinction_scale, [0.0, 1e6])?;
+    flags.of_volume.check_scale()?;
     check_light(&flags.light)?;
     colour("--emission", constant(&flags.emission), 1e4)?;
     colour("--albedo", constant(&flags.albedo), 1.0)
@@ -93,6 +81,7 @@ pub fn check(flags: &SolveOptions) -> Result<(), CommandError> {
     let extinction = flags.any(|wanted| wanted == Wanted::Extinction);
     let light = flags.any(|wanted| wanted == Wanted::Light);
     let of_light = "it is of --for light: leave it out";
+    let of_frames = "there are no frames: give --frames A..B, or leave it out";
     for (refused, flag, problem) in [
         (
             extinction && flags.basis == BasisSpelling::Box,
@@ -109,6 +98,13 @@ pub fn check(flags: &SolveOptions) -> Result<(), CommandError> {
             "--hull",
             "masks are seen along straight rays and --refraction bends them: leave it out",
         ),
+        (
+            light && flags.frames.is_some(),
+            "--frames",
+            "light that is solved for is one for all views: leave it out, or solve for light in another run",
+        ),
+        (flags.frames.is_none() && flags.seen_from.is_some(), "--seen-from", of_frames),
+        (flags.frames.is_none() && flags.rate.is_some(), "--rate", of_frames),
         (!light && flags.discs.lights.is_some(), "--lights", of_light),
         (!light && flags.discs.upper, "--upper", of_light),
         (!light && flags.discs.light_strategy.is_some(), "--light-strategy", of_light),

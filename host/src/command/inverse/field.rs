@@ -62,6 +62,16 @@ impl Field {
         Self { size, values }
     }
 
+    /// Straight between this and another, `part` of it, 0 to 1; on the finer grid where they have two.
+    pub fn blended(&self, other: &Self, part: f32) -> Self {
+        if self.values.len() < other.values.len() {
+            return self.resized(other.size).blended(other, part);
+        }
+        let other = other.resized(self.size);
+        let values = self.values.iter().zip(&other.values).map(|(own, other)| own.lerp(*other, part));
+        Self { size: self.size, values: values.collect() }
+    }
+
     /// Writes it as `.nii.gz` and `.npy` into a folder.
     ///
     /// # Errors
@@ -157,6 +167,18 @@ mod tests {
         }
         assert_eq!(inner, 10 * 4 * 8);
         assert_eq!(Field::constant(Vec3::X).resized([2, 1, 1]).values, [Vec3::X; 2]);
+    }
+
+    #[test]
+    fn blends_go_from_one_to_the_other() {
+        let size = [2, 1, 1];
+        let [one, other] =
+            [[0.0, 4.0], [1.0, 2.0]].map(|values| Field { size, values: values.map(Vec3::splat).to_vec() });
+        assert_eq!(one.blended(&other, 0.25).values, [0.25, 3.5].map(Vec3::splat));
+        assert_eq!((one.blended(&other, 0.0), one.blended(&other, 1.0)), (one.clone(), other.clone()));
+        let even = Field::constant(Vec3::splat(2.0));
+        assert_eq!(one.blended(&even, 0.5).values, [1.0, 3.0].map(Vec3::splat));
+        assert_eq!(even.blended(&one, 0.5), one.blended(&even, 0.5));
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod discs;
 mod error;
 pub(in crate::command) mod field;
 mod fits;
+mod keys;
 mod light;
 mod options;
 pub(in crate::command) mod paint;
@@ -22,6 +23,7 @@ mod stage;
 pub(in crate::command) mod studio;
 mod views;
 mod volumes;
+mod written;
 
 pub use options::Options;
 

@@ -2,6 +2,8 @@
 //! The flags of `airlight inverse`.
 
 use crate::command::parse;
+use crate::command::sequence::{FrameRange, frames, rate};
+use crate::command::volumes::VolumeFlags;
 use crate::inverse;
 use clap::{Subcommand, ValueEnum};
 use glam::Vec3;
@@ -29,7 +31,18 @@ pub enum Task {
 }
 
 /// The volume and its light, as both tasks know them.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
+#[command(
+    mut_arg("extinction_scale", |scale| scale.help(
+        "Factor from the values of --volume to extinction in 1/m, 0 to 1e6 [default: 1 of volumes that are made; of files optical depth 32 along the longest side, were all of it as dense as its densest voxel]"
+    )),
+    mut_arg("threshold", |threshold| threshold.help(
+        "Subtracted from the values of --volume; what is not greater is empty [default: 0]"
+    )),
+    mut_arg("voxels", |voxels| voxels.help(
+        "Voxels along the longest side of a volume that is made, 4 to 512 [default: 64]"
+    )),
+)]
 pub struct MediumFlags {
     /// Extinction: NIfTI (.nii, .nii.gz), a .npy array [z, y, x] or [z, y, x, 3], or a volume that is made: cloud, clouds, plume, smoke.
     #[arg(long, value_name = "FILE|cloud|clouds|plume|smoke")]
@@ -40,22 +53,9 @@ pub struct MediumFlags {
     /// Folder to write into; it is made where it is missing.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Factor from the values of --volume to extinction in 1/m, 0 to 1e6 [default: 1 of volumes that are made; of files optical depth 32
-    /// along the longest side, were all of it as dense as its densest voxel].
-    #[arg(long, value_name = "S", value_parser = parse::number, allow_hyphen_values = true)]
-    pub extinction_scale: Option<f32>,
-    /// Subtracted from the values of --volume; what is not greater is empty [default: 0].
-    #[arg(long, value_name = "V", value_parser = parse::number, allow_hyphen_values = true)]
-    pub threshold: Option<f32>,
-    /// Side of a voxel of a .npy --volume, metres [default: the longest side of the volume is 4 m].
-    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
-    pub voxel: Option<f32>,
-    /// Voxels along the longest side of a volume that is made, 4 to 512 [default: 64].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=512), allow_hyphen_values = true)]
-    pub voxels: Option<u32>,
-    /// Another cloud or smoke for another number [default: 1].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub seed: Option<u64>,
+    /// How the volume is read or made.
+    #[command(flatten)]
+    pub of_volume: VolumeFlags,
     /// Emission: radiance of a medium so thick that nothing shines through, 0 to 1e4: a volume in the same box (.nii, .nii.gz, .npy), or
     /// one number or R,G,B for all of it. A solve for emission begins here.
     #[arg(long, value_name = "FILE|E|R,G,B", default_value = "0", value_parser = property, allow_hyphen_values = true)]
@@ -137,6 +137,15 @@ pub struct SolveOptions {
     /// Light that is solved for.
     #[command(flatten)]
     pub discs: DiscFlags,
+    /// Frames A to B, both included, between key frames: views of each time are solved for by themselves, and what was found is blended.
+    #[arg(long, value_name = "A..B", value_parser = frames, allow_hyphen_values = true)]
+    pub frames: Option<FrameRange>,
+    /// With --frames: view from which frames are seen, in its light [default: the first].
+    #[arg(long, value_name = "VIEW")]
+    pub seen_from: Option<String>,
+    /// With --frames: frames a second [default: 24].
+    #[arg(long, value_name = "N", value_parser = rate, allow_hyphen_values = true)]
+    pub rate: Option<f32>,
 }
 
 /// `--channels`.

@@ -3,6 +3,7 @@
 
 use super::conflicts::check_medium;
 use super::fits::Needs;
+use super::keys::{Key, matters};
 use super::light::Lights;
 use super::options::RenderOptions;
 use super::places::check_names;
@@ -16,7 +17,6 @@ use crate::inverse::{Basis, Channels};
 use crate::{Gpu, Shaders};
 use glam::Vec3;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Runs the command.
 pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
@@ -25,25 +25,27 @@ pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
     let views = read_views(&flags.views)?;
     let mut names: Vec<PathBuf> = vec!["views.toml".into()];
     names.extend(
-        views.iter().flat_map(|view| ["png", "exr"].map(|end| format!("{}.{end}", view.name).into())),
+        views.list.iter().flat_map(|view| ["png", "exr"].map(|end| format!("{}.{end}", view.name).into())),
     );
     check_names(flags, &views, &names)?;
     let staging = Staging::new(&flags.out, names)?;
     let bar = progress::bar(3, quiet);
     bar.set_message("reading the volume");
     let channels = Channels::Rgb;
-    let matter = Matter::new(flags, channels)?;
+    let keys = Key::of_volumes(flags, &views);
+    let matters = matters(flags, &keys, channels)?;
+    let matter = &matters[0];
     let steps = steps(flags.steps, matter.extinction.size);
-    let refraction = Refraction::new(flags, &matter)?;
-    let lights = Lights::new(&flags.light, &views, &matter.bounds())?;
-    let seen = views.iter().zip(&lights.of_views);
-    let seen = seen.map(|(view, light)| Seen::new(view, &matter, steps, channels, *light));
+    let refraction = Refraction::new(flags, matter)?;
+    let lights = Lights::new(&flags.light, &views.list, &matter.bounds())?;
+    let seen = views.list.iter().zip(&lights.of_views);
+    let seen = seen.map(|(view, light)| Seen::new(view, matter, steps, channels, *light));
     let seen = seen.collect::<Result<Vec<_>, _>>()?;
     bar.inc(1);
 
     bar.set_message("rendering");
     let gpu = pollster::block_on(Gpu::new())?;
-    let known = known(&matter, refraction.as_ref());
+    let known = known(matter, refraction.as_ref());
     let sizes: Vec<(&str, [u32; 2])> =
         seen.iter().map(|seen| (seen.name(), seen.loaded.description.size)).collect();
     Needs { channels, known: &known, unknown: &[], views: &sizes, steps: false }.check(&gpu.limits)?;
@@ -55,32 +57,30 @@ pub fn run(options: &RenderOptions, quiet: bool) -> Result<(), CommandError> {
         light_resolution: flags.light.light_resolution,
     };
     let studio = Studio::new((&gpu, &shaders), (channels, Basis::Triangle), &setting)?;
-    let look = Look {
-        extinction: Arc::new(matter.extinction),
-        emission: matter.emission,
-        albedo: matter.albedo,
-        lights: lights.all,
-    };
-    let shots: Vec<Shot<'_>> = seen.iter().map(Seen::shot).collect();
-    let pictures = studio.pictures(&look, &shots)?;
+    let mut pictures = Vec::with_capacity(seen.len());
+    for (key, matter) in keys.iter().zip(&matters) {
+        let own = seen.iter().skip(pictures.len()).take(key.views.len());
+        let shots: Vec<Shot<'_>> = own.map(Seen::shot).collect();
+        pictures.extend(studio.pictures(&Look::of(matter, &lights), &shots)?);
+    }
     bar.inc(1);
 
     bar.set_message("writing");
     let composed: Vec<Vec<Vec3>> =
         seen.iter().zip(&pictures).map(|(seen, picture)| picture.over(&seen.background)).collect();
-    let written: Vec<_> = views.iter().zip(composed.iter().map(Vec::as_slice)).collect();
-    let written = write_views(staging.path(""), &written)?;
+    let written: Vec<_> = views.list.iter().zip(composed.iter().map(Vec::as_slice)).collect();
+    let written = write_views(staging.path(""), &written, &views.keys)?;
     staging.publish()?;
     bar.finish_and_clear();
-    for (view, written) in views.iter().zip(&written).filter(|(_, written)| written.clipped > 0) {
+    for (view, written) in views.list.iter().zip(&written).filter(|(_, written)| written.clipped > 0) {
         eprintln!(
             "airlight: warning: view `{}`: {} pixels are brighter than {}.png holds: let `target` name the .exr, or give less light",
             view.name, written.clipped, view.name
         );
     }
     if !quiet {
-        matter.report.iter().for_each(|line| println!("{line}"));
-        println!("views: {}", views.len());
+        matters.iter().flat_map(|matter| &matter.report).for_each(|line| println!("{line}"));
+        println!("views: {}", views.list.len());
         println!("{}", flags.out.join("views.toml").display());
     }
     Ok(())

@@ -4,7 +4,7 @@
 use super::discs::LitDiscs;
 use super::error::SolveError;
 use super::field::{Field, colours, reduced};
-use super::light::{Illumination, as_channels};
+use super::light::{Illumination, Lights, as_channels};
 use super::refraction::Refraction;
 use super::views::{LoadedView, ViewDescription, load_view};
 use super::volumes::Matter;
@@ -104,6 +104,26 @@ pub struct Look {
 }
 
 impl Look {
+    /// A volume as it was read, in all lights.
+    pub fn of(matter: &Matter, lights: &Lights) -> Self {
+        Self {
+            extinction: Arc::new(matter.extinction.clone()),
+            emission: matter.emission.clone(),
+            albedo: matter.albedo.clone(),
+            lights: lights.all.clone(),
+        }
+    }
+
+    /// Straight between this and another, `part` of it, 0 to 1, in the light of this one.
+    pub fn blended(&self, other: &Self, part: f32) -> Self {
+        Self {
+            extinction: Arc::new(self.extinction.blended(&other.extinction, part)),
+            emission: self.emission.blended(&other.emission, part),
+            albedo: self.albedo.blended(&other.albedo, part),
+            lights: self.lights.clone(),
+        }
+    }
+
     /// Light that was solved for.
     pub fn found(&self) -> Option<&LitDiscs> {
         match self.lights.first().map(Arc::as_ref) {

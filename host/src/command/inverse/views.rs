@@ -17,6 +17,8 @@
 //! - `environment`: the map of surroundings in whose light the view was seen, latitude-longitude, .png (sRGB), .exr or .hdr (linear radiance):
 //!   the only light of that view. The volume is the same in all views, so that those of several lightings are solved for together.
 //! - `time`: the frame that the view shows, a number.
+//!
+//! Views of one time may have a volume of their own: a `[[key]]` with that `time` and `volume`, the path of a file.
 
 mod error;
 mod load;
@@ -45,6 +47,32 @@ pub enum Background {
     Color(Vec3),
     /// A picture.
     Picture(PathBuf),
+}
+
+/// What a file says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Views {
+    /// The views, at least one.
+    pub list: Vec<ViewDescription>,
+    /// Volumes of key frames.
+    pub keys: Vec<KeyVolume>,
+}
+
+impl Views {
+    /// The volume that a view shows, where its key frame has one of its own.
+    pub fn volume_of(&self, view: &ViewDescription) -> Option<&Path> {
+        let own = self.keys.iter().find(|key| Some(key.time) == view.time);
+        own.map(|key| key.volume.as_path())
+    }
+}
+
+/// The volume of a key frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeyVolume {
+    /// That of the views that show it.
+    pub time: f32,
+    /// Its file.
+    pub volume: PathBuf,
 }
 
 /// A view as a file says it. Paths are those to open.
@@ -97,8 +125,17 @@ impl ViewDescription {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    key: Vec<FileKey>,
     #[serde(default)]
     view: Vec<FileView>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileKey {
+    time: f32,
+    volume: PathBuf,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -142,7 +179,7 @@ enum FileBackground {
 ///
 /// # Errors
 /// [`ViewsError::File`] with line and column, also for unknown keys; [`ViewsError::Impossible`] with the view and the key; [`ViewsError::Camera`].
-pub fn read_views(path: impl AsRef<Path>) -> Result<Vec<ViewDescription>, ViewsError> {
+pub fn read_views(path: impl AsRef<Path>) -> Result<Views, ViewsError> {
     let path = path.as_ref();
     parse_views(path, &read_toml(path)?)
 }
@@ -151,9 +188,9 @@ pub fn read_views(path: impl AsRef<Path>) -> Result<Vec<ViewDescription>, ViewsE
 ///
 /// # Errors
 /// As [`read_views`].
-pub fn parse_views(path: impl AsRef<Path>, text: &str) -> Result<Vec<ViewDescription>, ViewsError> {
+pub fn parse_views(path: impl AsRef<Path>, text: &str) -> Result<Views, ViewsError> {
     let path = path.as_ref();
-    let File { view: views } = parse_toml(path, text)?;
+    let File { key: keys, view: views } = parse_toml(path, text)?;
     if views.is_empty() {
         let (view, key) = (String::new(), "[[view]]");
         let reason = "there is none; give at least one".to_owned();
@@ -168,7 +205,27 @@ pub fn parse_views(path: impl AsRef<Path>, text: &str) -> Result<Vec<ViewDescrip
         }
         described.push(view);
     }
-    Ok(described)
+    let keys = keys_of(path, keys, &described)?;
+    Ok(Views { list: described, keys })
+}
+
+/// Volumes of key frames that views show.
+fn keys_of(path: &Path, keys: Vec<FileKey>, views: &[ViewDescription]) -> Result<Vec<KeyVolume>, ViewsError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut all: Vec<KeyVolume> = Vec::with_capacity(keys.len());
+    for FileKey { time, volume } in keys {
+        let wrong = |reason: String| impossible(path, "", "[[key]] time", reason);
+        if all.iter().any(|key| key.time == time) {
+            return Err(wrong(format!("{time} has two volumes; give one")));
+        }
+        if views.iter().all(|view| view.time != Some(time)) {
+            return Err(wrong(format!(
+                "no view shows {time}; give a view this time, or leave the volume out"
+            )));
+        }
+        all.push(KeyVolume { time, volume: folder.join(volume) });
+    }
+    Ok(all)
 }
 
 fn impossible(file: &Path, view: &str, key: &'static str, reason: impl Into<String>) -> ViewsError {

@@ -5,11 +5,11 @@ use super::field::{Field, reduced};
 use super::options::{MediumFlags, Property};
 use crate::command::CommandError;
 use crate::command::error::medium_error;
-use crate::command::volumes::{load_all, voxels};
-use crate::data::{Bounds, Volume, cloud, cloud_bank, load_channels, plume, smoke};
+use crate::command::volumes::{KNOWN, Made, is_array, load_all, voxels};
+use crate::data::{Bounds, Volume, load_channels};
 use crate::inverse::Channels;
 use glam::{Mat4, Vec3};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Optical depth along the longest side of a file, were all of it as dense as its densest voxel.
 const OPTICAL_DEPTH: f32 = 32.0;
@@ -19,29 +19,6 @@ const VOXELS: u32 = 64;
 const SAME_PLACE: f32 = 1e-3;
 /// Greatest emission that is read.
 const MOST_EMISSION: f32 = 1e4;
-
-/// A volume, or what makes it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Source<'a> {
-    Cloud,
-    Clouds,
-    Plume,
-    Smoke,
-    File(&'a Path),
-}
-
-impl<'a> Source<'a> {
-    /// What a name or a path means.
-    pub fn of(volume: &'a Path) -> Self {
-        match volume.to_str() {
-            Some("cloud") => Self::Cloud,
-            Some("clouds") => Self::Clouds,
-            Some("plume") => Self::Plume,
-            Some("smoke") => Self::Smoke,
-            _ => Self::File(volume),
-        }
-    }
-}
 
 /// What is in the box of the volume.
 pub struct Matter {
@@ -53,6 +30,8 @@ pub struct Matter {
     pub emission: Field,
     /// 0..1.
     pub albedo: Field,
+    /// From values to 1/m.
+    pub scale: f32,
     /// What is to be said, a line each.
     pub report: Vec<String>,
 }
@@ -67,8 +46,8 @@ impl Matter {
         let volumes = volumes(flags)?;
         let place = volumes[0].world_from_unit;
         let mut field = field(&volumes);
-        let made = !matches!(Source::of(&flags.volume), Source::File(_));
-        let threshold = flags.threshold.unwrap_or(0.0);
+        let made = Made::of(&flags.volume).is_some();
+        let threshold = flags.of_volume.threshold.unwrap_or(0.0);
         let bad = field.values.iter().filter(|value| !value.is_finite() || value.min_element() < 0.0).count();
         for value in &mut field.values {
             *value = clean(*value - threshold, f32::MAX);
@@ -76,7 +55,7 @@ impl Matter {
         let greatest = field.values.iter().map(|value| value.max_element()).fold(0.0, f32::max);
         let longest = edges(place).into_iter().fold(0.0, f32::max);
         let usual = if made || greatest == 0.0 { 1.0 } else { OPTICAL_DEPTH / (longest * greatest) };
-        let scale = flags.extinction_scale.unwrap_or(usual);
+        let scale = flags.of_volume.extinction_scale.unwrap_or(usual);
         for value in &mut field.values {
             *value = reduced((*value * scale).min(Vec3::splat(1e6)), channels);
         }
@@ -95,7 +74,7 @@ impl Matter {
         };
         let emission = property("--emission", &flags.emission, MOST_EMISSION)?;
         let albedo = property("--albedo", &flags.albedo, 1.0)?;
-        Ok(Self { place, extinction: field, emission, albedo, report })
+        Ok(Self { place, extinction: field, emission, albedo, scale, report })
     }
 
     /// The box around it in the world, metres.
@@ -116,23 +95,29 @@ pub fn voxels_of(place: Mat4, count: u32) -> [u32; 3] {
     voxels(count, edges(place))
 }
 
+/// Greatest distance of the corners of two boxes, metres.
+fn apart(one: Mat4, other: Mat4) -> f32 {
+    let corners = Bounds { min: Vec3::ZERO, max: Vec3::ONE }.corners();
+    let apart = corners.map(|corner| one.transform_point3(corner).distance(other.transform_point3(corner)));
+    apart.into_iter().fold(0.0, f32::max)
+}
+
+/// Whether a volume lies where another does, but for rounding.
+pub fn same_place(own: Mat4, place: Mat4) -> bool {
+    apart(own, place) <= SAME_PLACE * edges(place).into_iter().fold(0.0, f32::max)
+}
+
 /// From 0 to the most; 0 where it is no number.
 fn clean(value: Vec3, most: f32) -> Vec3 {
     Vec3::from(value.to_array().map(|value| if value.is_finite() { value.clamp(0.0, most) } else { 0.0 }))
 }
 
 fn volumes(flags: &MediumFlags) -> Result<Vec<Volume>, CommandError> {
-    let (count, seed) = (flags.voxels.unwrap_or(VOXELS), flags.seed.unwrap_or(1));
-    Ok(match Source::of(&flags.volume) {
-        Source::Cloud => vec![cloud(voxels(count, [6.0, 3.0, 5.0]), seed)],
-        Source::Clouds => vec![cloud_bank(voxels(count, [16.0, 4.0, 16.0]), seed)],
-        Source::Plume => vec![plume(voxels(count, [2.0, 5.0, 2.0]), seed)],
-        Source::Smoke => vec![smoke(voxels(count, [4.0, 3.0, 4.0]), seed)],
-        Source::File(path) => {
-            let known = "cloud, clouds, plume, smoke, or a file that ends in .nii, .nii.gz or .npy";
-            load_all(path, flags.voxel, known)?
-        }
-    })
+    let of = &flags.of_volume;
+    match Made::of(&flags.volume) {
+        Some(made) => Ok(vec![made.volume(of.voxels.unwrap_or(VOXELS), of.seed())]),
+        None => load_all(&flags.volume, of.voxel, KNOWN),
+    }
 }
 
 /// One volume is grey.
@@ -150,14 +135,10 @@ fn field(volumes: &[Volume]) -> Field {
 pub fn placed(flag: &str, path: &PathBuf, place: Mat4) -> Result<Field, CommandError> {
     let known = "a file that ends in .nii, .nii.gz or .npy";
     let volumes = load_channels(path, 1.0).map_err(|error| medium_error(flag, error, known))?;
-    if !crate::command::volumes::is_array(path) {
+    if !is_array(path) {
         let own = volumes[0].world_from_unit;
-        let longest = edges(place).into_iter().fold(0.0, f32::max);
-        let corners = Bounds { min: Vec3::ZERO, max: Vec3::ONE }.corners();
-        let apart =
-            corners.map(|corner| own.transform_point3(corner).distance(place.transform_point3(corner)));
-        let most = apart.into_iter().fold(0.0, f32::max);
-        if most > SAME_PLACE * longest {
+        if !same_place(own, place) {
+            let most = apart(own, place);
             return Err(CommandError::failure(format!(
                 "{flag}: {} lies elsewhere than --volume, up to {most} m apart: resample it to the same box, or give a .npy, which has no place",
                 path.display()

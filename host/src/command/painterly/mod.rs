@@ -11,17 +11,16 @@ mod studio;
 
 pub use flags::Options;
 
-use super::sequence::{RATE, delay, numbered};
+use super::sequence::{numbered, write_frames};
 use super::staging::Staging;
 use super::{CommandError, progress};
-use crate::formats::{write_animation, write_png};
+use crate::formats::write_png;
 use crate::painterly::{IsoVolume, Painting};
 use crate::{Gpu, Shaders};
 use framing::Framing;
 use indicatif::ProgressBar;
 use looks::Looks;
 use matter::Matter;
-use std::io;
 use std::path::{Path, PathBuf};
 use studio::Studio;
 
@@ -87,21 +86,10 @@ fn draw(studio: &mut Studio<'_>, staging: &Staging, bar: &ProgressBar) -> Result
         bar.set_message("painting");
         return write_png(path, width, height, &studio.paint(frames.first)?).map_err(failed);
     }
-    let mut problem = None;
-    let pictures = (0..frames.count as usize).map(|index| {
-        let frame = frames.first + index as u32;
+    write_frames(&path, options.size, frames, options.rate, |frame| {
         bar.set_message(format!("frame {frame}"));
-        let picture = studio.paint(frame).and_then(|pixels| {
-            write_png(numbered(&path, frame), width, height, &pixels).map_err(failed)?;
-            Ok(pixels)
-        });
+        let pixels = studio.paint(frame)?;
         bar.inc(1);
-        picture.map_err(|error| {
-            problem = Some(error);
-            io::Error::other("a frame could not be painted")
-        })
-    });
-    let written = write_animation(&path, width, height, pictures, delay(options.rate.unwrap_or(RATE)));
-    problem.map_or(Ok(()), Err)?;
-    written.map_err(failed)
+        Ok(pixels)
+    })
 }

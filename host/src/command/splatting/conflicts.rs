@@ -2,9 +2,8 @@
 //! What cannot be meant with `airlight splatting`, before any file is read.
 
 use super::flags::{Options, ShadingSpelling};
-use super::volumes::Source;
 use crate::command::CommandError;
-use crate::command::volumes::is_array;
+use crate::command::volumes::{Made, SEED_OF_FILES, is_array};
 use glam::Vec3;
 
 /// Most pixels a side.
@@ -44,9 +43,7 @@ pub fn check(flags: &Options) -> Result<(), CommandError> {
     if let Some(g) = flags.g.filter(|g| !(-0.99..=0.99).contains(g)) {
         return refuse("--g", format!("{g} is impossible: it must be from -0.99 to 0.99"));
     }
-    if let Some(scale) = flags.extinction_scale.filter(|scale| !(0.0..=1e6).contains(scale)) {
-        return refuse("--extinction-scale", format!("{scale} is impossible: extinction is from 0 to 1e6"));
-    }
+    flags.of_volume.check_scale()?;
     if flags.size.iter().any(|side| *side > MOST) {
         let [width, height] = flags.size;
         return refuse("--size", format!("{width}x{height} is impossible: each side is from 1 to {MOST}"));
@@ -58,10 +55,10 @@ pub fn check(flags: &Options) -> Result<(), CommandError> {
 type Rule = (bool, &'static str, &'static str);
 
 fn own(flags: &Options) -> Vec<Rule> {
-    let made = flags.volume.iter().any(|placed| !matches!(Source::of(placed), Source::File(_)));
+    let made = flags.volume.iter().any(|placed| Made::of(&placed.source).is_some());
     let array = flags.volume.iter().any(|placed| is_array(&placed.source));
     let still = flags.frames.is_none();
-    vec![
+    let mut rules = vec![
         (
             flags.g.is_some() && flags.shading == ShadingSpelling::Phong,
             "--g",
@@ -71,17 +68,6 @@ fn own(flags: &Options) -> Vec<Rule> {
             flags.light_texture.is_some() && (flags.transport.soft || flags.transport.scatters()),
             "--light-texture",
             "light that spreads has none: leave it out, or --forward, --back and --soft",
-        ),
-        (!array && flags.voxel.is_some(), "--voxel", "it is of .npy files of --volume: leave it out"),
-        (
-            !made && flags.voxels.is_some(),
-            "--voxels",
-            "it is of --volume cloud, clouds, plume and smoke: leave it out",
-        ),
-        (
-            !made && flags.seed.is_some(),
-            "--seed",
-            "files are as they are: leave it out, or take cloud, clouds, plume or smoke",
         ),
         (
             still && flags.turn.is_some(),
@@ -93,5 +79,11 @@ fn own(flags: &Options) -> Vec<Rule> {
             "--rate",
             "a single picture has none: give --frames A..B, or leave it out",
         ),
-    ]
+    ];
+    rules.extend(flags.of_volume.rules(
+        array,
+        (made, "it is of --volume cloud, clouds, plume and smoke: leave it out"),
+        (made, SEED_OF_FILES),
+    ));
+    rules
 }

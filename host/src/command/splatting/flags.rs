@@ -5,6 +5,7 @@ use super::transport::TransportFlags;
 use crate::command::camera::CameraFlags;
 use crate::command::parse::{self, LightSpelling, Placed};
 use crate::command::sequence::{FrameRange, frames, rate};
+use crate::command::volumes::VolumeFlags;
 use crate::splatting::{Shading, SheetSettings};
 use clap::ValueEnum;
 use glam::Vec3;
@@ -21,6 +22,17 @@ pub enum ShadingSpelling {
 
 /// Flags of the command. Every flag but --volume and --out has a default.
 #[derive(clap::Args)]
+#[command(
+    mut_arg("extinction_scale", |scale| scale.help(
+        "Extinction where the transfer function's opacity is 1, 1/m, 0 to 1e6 [default: of volumes that are made what they have; with files optical depth 100 along the longest side]"
+    )),
+    mut_arg("threshold", |threshold| threshold.help(
+        "Voxels of no greater value are left out [default: those that the transfer function makes transparent]"
+    )),
+    mut_arg("voxels", |voxels| voxels.help(
+        "Voxels along the longest side of volumes that are made, 4 to 512 [default: 128]"
+    )),
+)]
 pub struct Options {
     /// Volume: NIfTI (.nii, .nii.gz), a .npy array [z, y, x], or one that is made: cloud, clouds, plume or smoke; may be given several
     /// times. What follows an `@` moves it by metres, scales it, and turns it by degrees: clouds@0,-4,0,2,30.
@@ -35,22 +47,9 @@ pub struct Options {
     /// Colours and opacities of values: cloud, smoke, head, stent, vessels, or a TOML file.
     #[arg(long, value_name = "FILE.toml|NAME", default_value = "cloud")]
     pub transfer: PathBuf,
-    /// Extinction where the transfer function's opacity is 1, 1/m, 0 to 1e6 [default: of volumes that are made what they
-    /// have; with files optical depth 100 along the longest side].
-    #[arg(long, value_name = "S", value_parser = parse::number, allow_hyphen_values = true)]
-    pub extinction_scale: Option<f32>,
-    /// Voxels of no greater value are left out [default: those that the transfer function makes transparent].
-    #[arg(long, value_name = "V", value_parser = parse::number, allow_hyphen_values = true)]
-    pub threshold: Option<f32>,
-    /// Side of a voxel of .npy volumes, metres [default: the longest side is 4 m].
-    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
-    pub voxel: Option<f32>,
-    /// Voxels along the longest side of volumes that are made, 4 to 512 [default: 128].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=512), allow_hyphen_values = true)]
-    pub voxels: Option<u32>,
-    /// Other clouds and smoke for another number [default: 1].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub seed: Option<u64>,
+    /// How volumes are read or made.
+    #[command(flatten)]
+    pub of_volume: VolumeFlags,
     /// What the medium does with light.
     #[arg(long, value_enum, default_value = "scattering")]
     pub shading: ShadingSpelling,
@@ -127,7 +126,7 @@ impl Options {
 
     /// Voxels along the longest side of what is made.
     pub fn voxels(&self) -> u32 {
-        self.voxels.unwrap_or(VOXELS)
+        self.of_volume.voxels.unwrap_or(VOXELS)
     }
 
     /// How sheets are drawn, but for the way of the light.

@@ -11,17 +11,15 @@ mod volumes;
 pub use flags::Options;
 
 use super::scattering::{tone_mapped, write_pictures};
-use super::sequence::{FrameRange, RATE, delay, numbered};
+use super::sequence::{FrameRange, write_frames};
 use super::{CommandError, progress};
 use crate::core::Tonemap;
 use crate::data::load_light_image;
-use crate::formats::{write_animation, write_png};
 use crate::splatting::{SheetInputs, SheetPicture, SheetSettings, Splats, Surfaces};
 use crate::transmittance::Composite;
 use crate::{Gpu, Shaders, light_texture};
 use framing::Framing;
 use indicatif::ProgressBar;
-use std::io;
 use studio::{Drawn, Studio};
 use volumes::Volumes;
 
@@ -89,7 +87,6 @@ fn draw(studio: &Studio<'_>, frames: FrameRange, bar: &ProgressBar) -> Result<Dr
     let (gpu, shaders) = studio.device;
     let options = studio.options;
     let tonemap = Tonemap::new(gpu, shaders)?;
-    let [width, height] = options.size;
     if options.frames.is_none() {
         bar.set_message("drawing");
         let drawn = studio.draw(frames.first)?;
@@ -98,25 +95,14 @@ fn draw(studio: &Studio<'_>, frames: FrameRange, bar: &ProgressBar) -> Result<Dr
         bar.inc(1);
         return Ok(drawn);
     }
-    let (mut problem, mut last) = (None, None);
-    let pictures = (0..frames.count as usize).map(|index| {
-        let frame = frames.first + index as u32;
+    let mut last = None;
+    write_frames(&options.out, options.size, frames, options.rate, |frame| {
         bar.set_message(format!("frame {frame}"));
-        let picture = studio.draw(frame).and_then(|drawn| {
-            let pixels = tone_mapped(gpu, &tonemap, std::slice::from_ref(&drawn.composed), options.exposure)?;
-            let failed = |error| CommandError::failure(format!("--frames: {error}"));
-            write_png(numbered(&options.out, frame), width, height, &pixels).map_err(failed)?;
-            last = Some(drawn);
-            Ok(pixels)
-        });
+        let drawn = studio.draw(frame)?;
+        let pixels = tone_mapped(gpu, &tonemap, std::slice::from_ref(&drawn.composed), options.exposure)?;
+        last = Some(drawn);
         bar.inc(1);
-        picture.map_err(|error| {
-            problem = Some(error);
-            io::Error::other("a frame could not be drawn")
-        })
-    });
-    let written = write_animation(&options.out, width, height, pictures, delay(options.rate.unwrap_or(RATE)));
-    problem.map_or(Ok(()), Err)?;
-    written.map_err(|error| CommandError::failure(format!("--out: {error}")))?;
+        Ok(pixels)
+    })?;
     last.ok_or_else(|| CommandError::failure("--frames: there is none"))
 }

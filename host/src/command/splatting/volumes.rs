@@ -5,9 +5,9 @@ use super::flags::Options;
 use crate::command::CommandError;
 use crate::command::parse::Placed;
 use crate::command::transfers::transfer;
-use crate::command::volumes::{load, voxels};
+use crate::command::volumes::{KNOWN, Made, load};
 use crate::core::TransferFunction;
-use crate::data::{Bounds, Mesh, Volume, cloud, cloud_bank, load_mesh, plume, smoke, value_range};
+use crate::data::{Bounds, Mesh, Volume, load_mesh, value_range};
 use crate::splatting::Kernel;
 use glam::Vec3;
 use std::path::Path;
@@ -15,40 +15,11 @@ use std::path::Path;
 /// Optical depth along the longest side of files, were all of them opaque.
 const OPTICAL_DEPTH: f32 = 100.0;
 
-/// A volume, or what makes it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Source<'a> {
-    Cloud,
-    Clouds,
-    Plume,
-    Smoke,
-    File(&'a Path),
-}
-
-impl<'a> Source<'a> {
-    /// What a name or a path means.
-    pub fn of(placed: &'a Placed) -> Self {
-        match placed.source.to_str() {
-            Some("cloud") => Self::Cloud,
-            Some("clouds") => Self::Clouds,
-            Some("plume") => Self::Plume,
-            Some("smoke") => Self::Smoke,
-            _ => Self::File(&placed.source),
-        }
-    }
-
-    fn volume(self, flags: &Options) -> Result<Volume, CommandError> {
-        let (count, seed) = (flags.voxels(), flags.seed.unwrap_or(1));
-        Ok(match self {
-            Self::Cloud => cloud(voxels(count, [6.0, 3.0, 5.0]), seed),
-            Self::Clouds => cloud_bank(voxels(count, [16.0, 4.0, 16.0]), seed),
-            Self::Plume => plume(voxels(count, [2.0, 5.0, 2.0]), seed),
-            Self::Smoke => smoke(voxels(count, [4.0, 3.0, 4.0]), seed),
-            Self::File(path) => {
-                let known = "cloud, clouds, plume, smoke, or a file that ends in .nii, .nii.gz or .npy";
-                load(path, flags.voxel, known)?
-            }
-        })
+/// Reads or makes one.
+fn volume(source: &Path, flags: &Options) -> Result<Volume, CommandError> {
+    match Made::of(source) {
+        Some(made) => Ok(made.volume(flags.voxels(), flags.of_volume.seed())),
+        None => load(source, flags.of_volume.voxel, KNOWN),
     }
 }
 
@@ -88,12 +59,12 @@ impl Volumes {
             mesh.append(&read.transformed(placed.transform()));
         }
         let read = |placed: &Placed| -> Result<Volume, CommandError> {
-            let mut volume = Source::of(placed).volume(flags)?;
+            let mut volume = volume(&placed.source, flags)?;
             volume.world_from_unit = placed.transform() * volume.world_from_unit;
             Ok(volume)
         };
         let list = flags.volume.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-        let made = flags.volume.iter().all(|placed| !matches!(Source::of(placed), Source::File(_)));
+        let made = flags.volume.iter().all(|placed| Made::of(&placed.source).is_some());
         Ok(Self::of(list, mesh, transfer, flags, made))
     }
 
@@ -115,7 +86,7 @@ impl Volumes {
             share.clamp(0.0, 1.0) as f32
         };
         let transparent = transfer.transparent_below();
-        let threshold = flags.threshold.map_or(transparent, share).min(1.0);
+        let threshold = flags.of_volume.threshold.map_or(transparent, share).min(1.0);
         let mut not_finite = 0;
         for value in list.iter_mut().flat_map(|volume| &mut volume.values) {
             if value.is_finite() {
@@ -140,7 +111,7 @@ impl Volumes {
         let longest =
             list.iter().map(|volume| volume.bounds().size().max_element()).fold(0.0, f32::max).max(1e-6);
         let own = if made { high.max(0.0) } else { (OPTICAL_DEPTH / longest).min(1e6) };
-        let extinction = flags.extinction_scale.unwrap_or(own);
+        let extinction = flags.of_volume.extinction_scale.unwrap_or(own);
         let mut report = vec![
             format!("values: {low} to {high}; left out up to {}", low + threshold * (high - low)),
             format!("extinction: {extinction:.4} 1/m where opacity is 1"),

@@ -45,9 +45,7 @@ pub fn check(flags: &Options) -> Result<(), CommandError> {
             return refuse(flag, format!("{colour} is impossible: 0 to 1e4 is possible"));
         }
     }
-    if let Some(scale) = flags.extinction_scale.filter(|scale| !(0.0..=1e6).contains(scale)) {
-        return refuse("--extinction-scale", format!("{scale} is impossible: extinction is from 0 to 1e6"));
-    }
+    flags.of_volume.check_scale()?;
     if flags.size.iter().any(|side| *side > MOST) {
         let [width, height] = flags.size;
         return refuse("--size", format!("{width}x{height} is impossible: each side is from 1 to {MOST}"));
@@ -133,29 +131,31 @@ fn medium(flags: &Options) -> Vec<Rule> {
     let file = matches!(source, Source::VolumeFile(_));
     let array = matches!(source, Source::VolumeFile(path) if is_array(path));
     let particles = flags.particles.is_some();
-    vec![
+    let mut rules = vec![
         (
             !particles && flags.bounds.is_some(),
             "--bounds",
             "a volume has its own: leave it out, or take --particles",
         ),
         (particles && flags.reading.is_some(), "--reading", "particles have no voxels: leave it out"),
-        (!file && flags.threshold.is_some(), "--threshold", "it is of files of --volume: leave it out"),
-        (!array && flags.voxel.is_some(), "--voxel", "it is of .npy files of --volume: leave it out"),
         (
-            !matches!(source, Source::Cloud | Source::Plume) && flags.voxels.is_some(),
-            "--voxels",
-            "it is of --volume cloud and plume: leave it out",
+            !file && flags.of_volume.threshold.is_some(),
+            "--threshold",
+            "it is of files of --volume: leave it out",
         ),
         (
             source != Source::Burst && flags.count.is_some(),
             "--count",
             "it is of --particles burst: leave it out",
         ),
+    ];
+    rules.extend(flags.of_volume.rules(
+        array,
+        (matches!(source, Source::Made(_)), "it is of --volume cloud and plume: leave it out"),
         (
-            matches!(source, Source::VolumeFile(_) | Source::ParticleFile(_)) && flags.seed.is_some(),
-            "--seed",
+            matches!(source, Source::Made(_) | Source::Burst),
             "files are as they are: leave it out, or take cloud, plume or burst",
         ),
-    ]
+    ));
+    rules
 }

@@ -3,6 +3,7 @@
 
 use crate::command::camera::CameraFlags;
 use crate::command::parse::{self, LightSpelling};
+use crate::command::volumes::{Made, VolumeFlags};
 use crate::core::Reading;
 use crate::transmittance::{Form, MapSettings, Precision};
 use clap::ValueEnum;
@@ -81,6 +82,18 @@ const MAP_SIZE: u32 = 512;
 /// Flags of the command. Every flag but the medium and --out has a default.
 #[derive(clap::Args)]
 #[command(group = clap::ArgGroup::new("medium").required(true).args(["volume", "particles"]))]
+#[command(
+    mut_arg("extinction_scale", |scale| scale.help(
+        "From values of a file of a volume to extinction in 1/m; of all else a factor on its extinction, 0 to 1e6 [default: 1; of files optical depth 32 at the greatest value along the longest side]"
+    )),
+    mut_arg("threshold", |threshold| threshold.help(
+        "Value that is empty in a file of a volume: what exceeds it is extinction [default: 0]"
+    )),
+    mut_arg("voxels", |voxels| voxels.help(
+        "Voxels along the longest side of cloud and plume, 4 to 512 [default: 160]"
+    )),
+    mut_arg("seed", |seed| seed.help("Another cloud, plume or burst for another number [default: 1]")),
+)]
 pub struct Options {
     /// Volume: NIfTI (.nii, .nii.gz), a .npy array [z, y, x], or one that is made: cloud or plume.
     #[arg(long, value_name = "FILE|cloud|plume")]
@@ -115,25 +128,12 @@ pub struct Options {
     /// How the volume is read [default: linear].
     #[arg(long, value_enum)]
     pub reading: Option<ReadingSpelling>,
-    /// From values of a file of a volume to extinction in 1/m; of all else a factor on its extinction [default: 1; of files
-    /// optical depth 32 at the greatest value along the longest side].
-    #[arg(long, value_name = "S", value_parser = parse::number, allow_hyphen_values = true)]
-    pub extinction_scale: Option<f32>,
-    /// Value that is empty in a file of a volume: what exceeds it is extinction [default: 0].
-    #[arg(long, value_name = "V", value_parser = parse::number, allow_hyphen_values = true)]
-    pub threshold: Option<f32>,
-    /// Side of a voxel of a .npy volume, metres [default: the longest side is 4 m].
-    #[arg(long, value_name = "M", value_parser = parse::positive, allow_hyphen_values = true)]
-    pub voxel: Option<f32>,
-    /// Voxels along the longest side of cloud and plume, 4 to 512 [default: 160].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=512), allow_hyphen_values = true)]
-    pub voxels: Option<u32>,
+    /// How the volume is read or made.
+    #[command(flatten)]
+    pub of_volume: VolumeFlags,
     /// Particles of burst, 1 to 1000000 [default: 20000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_hyphen_values = true)]
     pub count: Option<u32>,
-    /// Another cloud, plume or burst for another number [default: 1].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub seed: Option<u64>,
     /// Light: directional:AZ,EL (degrees, TOWARDS the light).
     #[arg(long, value_name = "LIGHT", default_value = "directional:70,40", value_parser = parse::light)]
     pub light: LightSpelling,
@@ -166,8 +166,7 @@ pub struct Options {
 /// What is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source<'a> {
-    Cloud,
-    Plume,
+    Made(Made),
     VolumeFile(&'a Path),
     Burst,
     ParticleFile(&'a Path),
@@ -176,12 +175,12 @@ pub enum Source<'a> {
 impl Options {
     /// What is seen.
     pub fn source(&self) -> Source<'_> {
-        let named = |path: &Path, name: &str| path.as_os_str() == name;
         match (self.volume.as_deref(), self.particles.as_deref()) {
-            (Some(path), _) if named(path, "cloud") => Source::Cloud,
-            (Some(path), _) if named(path, "plume") => Source::Plume,
-            (Some(path), _) => Source::VolumeFile(path),
-            (None, Some(path)) if !named(path, "burst") => Source::ParticleFile(path),
+            (Some(path), _) => match Made::of(path) {
+                Some(made @ (Made::Cloud | Made::Plume)) => Source::Made(made),
+                _ => Source::VolumeFile(path),
+            },
+            (None, Some(path)) if path.as_os_str() != "burst" => Source::ParticleFile(path),
             (None, _) => Source::Burst,
         }
     }

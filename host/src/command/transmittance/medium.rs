@@ -5,9 +5,9 @@ use super::flags::{Options, Source};
 use crate::Lighting;
 use crate::command::CommandError;
 use crate::command::error::medium_error;
-use crate::command::volumes::{load, voxels};
+use crate::command::volumes::load;
 use crate::core::{Light, LightError};
-use crate::data::{Bounds, Particles, Volume, burst, cloud, load_particles, plume};
+use crate::data::{Bounds, Particles, Volume, burst, load_particles};
 use crate::transmittance::ParticleCounts;
 use glam::Vec3;
 
@@ -48,16 +48,15 @@ impl Medium {
     /// # Errors
     /// Misuse: an unknown name. A failure: a file, or nothing in it.
     pub fn new(flags: &Options) -> Result<Self, CommandError> {
-        let seed = flags.seed.unwrap_or(1);
-        let scale = flags.extinction_scale;
-        let count = flags.voxels.unwrap_or(VOXELS);
+        let seed = flags.of_volume.seed();
+        let scale = flags.of_volume.extinction_scale;
+        let count = flags.of_volume.voxels.unwrap_or(VOXELS);
         match flags.source() {
-            Source::Cloud => made(cloud(voxels(count, [6.0, 3.0, 5.0]), seed), scale),
-            Source::Plume => made(plume(voxels(count, [2.0, 5.0, 2.0]), seed), scale),
+            Source::Made(own) => made(own.volume(count, seed), scale),
             Source::VolumeFile(path) => {
                 let known = "cloud, plume, or a file that ends in .nii, .nii.gz or .npy";
-                let volume = load(path, flags.voxel, known)?;
-                let threshold = flags.threshold.unwrap_or(0.0);
+                let volume = load(path, flags.of_volume.voxel, known)?;
+                let threshold = flags.of_volume.threshold.unwrap_or(0.0);
                 Self::of_volume(volume, threshold, scale).map_err(|problem| {
                     CommandError::failure(format!("--volume: {}: {problem}", path.display()))
                 })
@@ -123,7 +122,7 @@ impl Medium {
             let dropped = described(&counts);
             return Err(format!("none of {all} particles can be drawn ({dropped}): check columns and units"));
         }
-        let scale = flags.extinction_scale.unwrap_or(1.0);
+        let scale = flags.of_volume.extinction_scale.unwrap_or(1.0);
         kept.list
             .iter_mut()
             .for_each(|particle| particle.extinction = (particle.extinction * scale).min(1e6));

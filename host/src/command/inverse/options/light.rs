@@ -8,7 +8,7 @@ use glam::Vec3;
 use std::path::PathBuf;
 
 /// Where light comes from.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub struct LightFlags {
     /// Linear RGB radiance from all around that an albedo of 1 scatters, one number or R,G,B, 0 to 1e4; nothing takes it away on its way
     /// [default: 1 without --environment and --light]. A solve for light begins here.

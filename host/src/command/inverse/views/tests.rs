@@ -15,7 +15,7 @@ camera = { eye = [0, 1, 5], target = [0, 1, 0], field_of_view = 40 }
 fn written(folder: &Path, more: &str) -> Result<LoadedView, ViewsError> {
     let path = folder.join("views.toml");
     std::fs::write(&path, format!("{FRONT}{more}")).unwrap();
-    load_view(&read_views(&path)?[0])
+    load_view(&read_views(&path)?.list[0])
 }
 
 #[test]
@@ -41,7 +41,7 @@ near = -1
 far = 9
 "
     );
-    let views = parse_views("a/views.toml", &text).unwrap();
+    let views = parse_views("a/views.toml", &text).unwrap().list;
     let [front, side] = &views[..] else { panic!("{views:?}") };
     let View::Perspective(view) = front.view else { panic!("{front:?}") };
     assert_eq!((view.field_of_view, view.near, view.far), (40.0, 0.05, 500.0));
@@ -203,15 +203,15 @@ fn what_is_written_is_read_again() {
         "{FRONT}mask = 'mask.png'\nbackground = [0.1, 0.7, 3]\ntime = 0.3\n[[view]]\nname = 'top'\nsize = [1, 2]\ncamera = {{ eye = [0.1, 7, 0.3], target = [0, 0, 0], height = 0.7, up = [1, 0.2, 0] }}"
     );
     std::fs::write(at("views.toml"), text).unwrap();
-    let views = read_views(at("views.toml")).unwrap();
+    let views = read_views(at("views.toml")).unwrap().list;
     let out = at("out");
     std::fs::create_dir(&out).unwrap();
     let front: Vec<Vec3> = (0..6).map(|i| Vec3::new(0.1, 0.3 * i as f32, 0.25)).collect();
     let top = vec![Vec3::new(-0.5, 0.5, 1e9), Vec3::ONE];
-    let written = write_views(&out, &[(&views[0], &front), (&views[1], &top)]).unwrap();
+    let written = write_views(&out, &[(&views[0], &front), (&views[1], &top)], &[]).unwrap();
     assert_eq!(written.iter().map(|view| view.clipped).collect::<Vec<_>>(), [2, 1]);
     let text = std::fs::read_to_string(out.join("views.toml")).unwrap();
-    let again = read_views(out.join("views.toml")).unwrap();
+    let again = read_views(out.join("views.toml")).unwrap().list;
     for ((again, before), written) in again.iter().zip(&views).zip(&written) {
         assert_eq!(
             (&again.name, again.size, again.view, again.up),
@@ -237,8 +237,8 @@ fn what_is_written_is_read_again() {
     // A failure leaves no file of views.
     let empty = at("empty");
     std::fs::create_dir(&empty).unwrap();
-    let error = write_views(&empty, &[(&views[0], &front), (&views[1], &front)]).unwrap_err();
+    let error = write_views(&empty, &[(&views[0], &front), (&views[1], &front)], &[]).unwrap_err();
     assert!(error.to_string().contains("1x2"), "{error}");
     assert!(!empty.join("views.toml").exists());
-    assert!(matches!(write_views(at("no"), &[(&views[0], &front)]), Err(ViewsError::Write(_))));
+    assert!(matches!(write_views(at("no"), &[(&views[0], &front)], &[]), Err(ViewsError::Write(_))));
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Views with their pictures, to be painted on.
 
-use super::{Background, File, FileBackground, FileCamera, FileView, ViewDescription, ViewsError};
+use super::{
+    Background, File, FileBackground, FileCamera, FileKey, FileView, KeyVolume, ViewDescription, ViewsError,
+};
 use crate::core::View;
 use crate::data::srgb_from_linear;
 use crate::formats::{WriteError, write_exr, write_png, write_whole};
@@ -28,7 +30,7 @@ pub struct WrittenView {
 }
 
 /// Writes `views.toml` into a folder, with a .png and an .exr a view, named after it: linear RGB radiance, a value a pixel. Each file whole
-/// or not at all, and `views.toml` last, so that what it names is there. The pictures become the targets; other files of the views stay
+/// or not at all, and `views.toml` last, so that what it names is there. `keys`: volumes of key frames, which stay where they are. The pictures become the targets; other files of the views stay
 /// where they are.
 ///
 /// # Errors
@@ -36,10 +38,12 @@ pub struct WrittenView {
 pub fn write_views(
     folder: impl AsRef<Path>,
     views: &[(&ViewDescription, &[Vec3])],
+    keys: &[KeyVolume],
 ) -> Result<Vec<WrittenView>, ViewsError> {
     let folder = folder.as_ref();
     let file = folder.join("views.toml");
     let text = toml::to_string(&File {
+        key: keys.iter().map(file_key).collect::<Result<_, _>>()?,
         view: views.iter().map(|(view, _)| file_view(view)).collect::<Result<_, _>>()?,
     });
     let text = text.map_err(|error| WriteError::Data { path: file.clone(), reason: error.to_string() })?;
@@ -66,11 +70,16 @@ fn png_name(view: &ViewDescription) -> String {
     format!("{}.png", view.name)
 }
 
+/// Where the folder of the new file does not matter.
+fn absolute(path: &PathBuf) -> Result<PathBuf, WriteError> {
+    std::path::absolute(path).map_err(|source| WriteError::File { path: path.clone(), source })
+}
+
+fn file_key(of: &KeyVolume) -> Result<FileKey, ViewsError> {
+    Ok(FileKey { time: of.time, volume: absolute(&of.volume)? })
+}
+
 fn file_view(of: &ViewDescription) -> Result<FileView, ViewsError> {
-    // Where the folder of the new file does not matter.
-    let absolute = |path: &PathBuf| {
-        std::path::absolute(path).map_err(|source| WriteError::File { path: path.clone(), source })
-    };
     let elsewhere = |path: &Option<PathBuf>| path.as_ref().map(absolute).transpose();
     let (field_of_view, height, near, far) = match of.view {
         View::Perspective(view) => (Some(view.field_of_view), None, view.near, view.far),

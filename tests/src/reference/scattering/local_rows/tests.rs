@@ -2,6 +2,7 @@
 //! The geometry of local rows, their searched bounds against closed forms, and radiance over maps with
 //! closed forms.
 
+use super::super::local_light::Cone;
 use super::super::test_scenes::Random;
 use super::*;
 
