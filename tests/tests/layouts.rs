@@ -27,7 +27,7 @@ use airlight::stylize::{
 use airlight::transmittance::{MediumLighting, SplatTarget};
 use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
-use glam::{IVec2, Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
+use glam::{Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
@@ -334,7 +334,7 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         radius: f32, thickness: f32, bias: f32, samples: u32, steps: u32, side: u32, frame: u32, reserved_a: u32,
     });
     twin!(twins: BentBlur {
-        axis: IVec2, taps: i32, reach: f32, least_cosine: f32, reserved_a: f32, reserved_b: f32, reserved_c: f32,
+        axis: UVec2, taps: u32, reach: f32, least_cosine: f32, reserved_a: f32, reserved_b: f32, reserved_c: f32,
     });
     twin!(twins: VoxelGrid { size: UVec3, reserved_a: u32 });
     twin!(twins: SolverPart {

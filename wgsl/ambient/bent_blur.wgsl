@@ -7,9 +7,9 @@
 /// A blur along an axis. 32 bytes.
 struct BentBlur {
     /// (1, 0) or (0, 1).
-    axis: vec2<i32>,
+    axis: vec2<u32>,
     /// Pixels that are averaged, from 1 up: the side of the sampling pattern.
-    taps: i32,
+    taps: u32,
     /// Metres from the tangent plane at which a neighbour counts no more, above 0.
     reach: f32,
     /// Cosine between normals at which a neighbour counts no more, below 1.

@@ -4,12 +4,12 @@
 use super::AmbientError;
 use crate::out_of_range::in_range;
 use encase::ShaderType;
-use glam::IVec2;
+use glam::UVec2;
 
 /// Most directions a pixel.
 const MOST_SAMPLES: u32 = 256;
 /// Most steps along each.
-const MOST_STEPS: u32 = 64;
+const MOST_STEPS: u32 = 256;
 /// Greatest side of the sampling pattern.
 const MOST_SIDE: u32 = 16;
 
@@ -47,7 +47,7 @@ impl OcclusionSettings {
         in_range("thickness of occluders", self.thickness, above, "above 0 and at most 1e15 metres")?;
         in_range("bias of occlusion", self.bias, 0.0..=1.0, "from 0 to 1")?;
         in_range("number of directions", self.samples as f32, 1.0..=MOST_SAMPLES as f32, "from 1 to 256")?;
-        in_range("number of steps", self.steps as f32, 1.0..=MOST_STEPS as f32, "from 1 to 64")?;
+        in_range("number of steps", self.steps as f32, 1.0..=MOST_STEPS as f32, "from 1 to 256")?;
         in_range("side of the sampling pattern", self.side as f32, 1.0..=MOST_SIDE as f32, "from 1 to 16")?;
         Ok(())
     }
@@ -57,9 +57,9 @@ impl OcclusionSettings {
 #[derive(Debug, Clone, Copy, PartialEq, ShaderType)]
 pub struct BentBlur {
     /// (1, 0) or (0, 1).
-    pub axis: IVec2,
+    pub axis: UVec2,
     /// Pixels that are averaged.
-    pub taps: i32,
+    pub taps: u32,
     /// Metres from the tangent plane at which a neighbour counts no more.
     pub reach: f32,
     /// Cosine between normals at which a neighbour counts no more.
@@ -76,8 +76,8 @@ impl BentBlur {
     /// Over the sampling pattern along an axis of the picture, 0 or 1.
     pub(super) fn over(settings: &OcclusionSettings, axis: usize) -> Self {
         Self {
-            axis: IVec2::AXES[axis],
-            taps: settings.side as i32,
+            axis: UVec2::AXES[axis],
+            taps: settings.side,
             reach: 0.25 * settings.radius,
             least_cosine: 0.6,
             reserved_a: 0.0,

@@ -70,12 +70,19 @@ impl SeenImages {
         texels.chunks_exact(4).map(texel).collect()
     }
 
-    /// The pixel that sees a place.
-    pub fn pixel(&self, place: Vec3) -> usize {
+    /// Mean direction and openness about a place: of all directions of the 8x8 pixels around it.
+    pub fn bent_at(&self, form: BentForm, settings: &OcclusionSettings, place: Vec3) -> (Vec3, f64) {
+        let all = self.bent(form, settings);
         let at = self.reference.project(place).unwrap();
         let column = (0.5 + 0.5 * at[0]) * f64::from(self.size[0]);
         let row = (0.5 - 0.5 * at[1]) * f64::from(self.size[1]);
-        row as usize * self.size[0] as usize + column as usize
+        let (mut sum, mut open) = (Vec3::default(), 0.0);
+        for (x, y) in (0..8).flat_map(|y| (0..8).map(move |x| (x, y))) {
+            let pixel = (row as usize + y - 4) * self.size[0] as usize + column as usize + x - 4;
+            sum = sum + all[pixel].0 * all[pixel].1;
+            open += all[pixel].1;
+        }
+        (sum * (1.0 / open), open / 64.0)
     }
 }
 
@@ -84,9 +91,9 @@ pub fn sharp(sampling: Sampling) -> BentForm {
     BentForm { sampling, blurring: Blurring::Off, occlusion_only: false, halved: false }
 }
 
-/// All directions in each pixel.
+/// Many directions in every 8x8 pixels.
 pub fn many(radius: f32) -> OcclusionSettings {
-    OcclusionSettings { samples: 256, steps: 48, side: 1, bias: 0.01, ..OcclusionSettings::new(radius) }
+    OcclusionSettings { samples: 16, steps: 128, side: 8, bias: 0.01, ..OcclusionSettings::new(radius) }
 }
 
 /// Cameras that look at a place from `eye`: forward and reversed depth, and parallel rays.

@@ -3,7 +3,8 @@
 // source: thesis 3.2 to 3.4, Eq. 3.2 to 3.5, Listing 3.1; see ambient/occluders for the other samplers.
 // note: Dispatch over the picture. A direction is marched in a few steps and is blocked where a place on it lies behind what is seen there, by less
 // note: than its thickness; only what rises over the tangent plane blocks, so that flat surfaces do not block themselves.
-// note: Where a march leaves the picture, or what is seen is too far in front, nothing is known: Listing 3.1's outlier.
+// note: What is seen too far in front says nothing: Listing 3.1's outlier. Where a march leaves the picture it goes on freely, so that openness and
+// note: mean directions are of the same visibility, by which irradiance under even light is exact (ambient/bent_cone).
 // note: Pixels without geometry, with a depth of the far plane or none that is finite, are open with a mean direction of 0. A normal of length 0 or
 // note: none that is finite counts as one towards the viewer.
 // note: For a picture of half the resolution give depth, normals and the camera's viewport of that size; ambient/upsample_bent makes it whole.
@@ -62,9 +63,9 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
     let at = seen_place(camera, place + basis * vec3<f32>(local.xy * settings.radius, 0.0));
     let seen = seen_at(vec2<i32>(floor(at.pixel)));
     let towards = seen.place - place;
-    let blocks = seen.known && elevation_sine(towards, normal) > settings.bias;
+    let blocks = at.inside && seen.known && elevation_sine(towards, normal) > settings.bias;
     let blocked = select(0.0, occluder_weight(length(towards), settings.radius), blocks);
-    return bent_add(sum, basis * local, 1.0 - blocked, !at.inside);
+    return bent_add(sum, basis * local, 1.0 - blocked, false);
 }
 #else
 #ifdef HORIZON
@@ -104,9 +105,8 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
         let front = seen.place - place;
         let back = front - viewer * settings.thickness;
         let ends = vec2<f32>(atan2(dot(front, aside), dot(front, viewer)), atan2(dot(back, aside), dot(back, viewer))) - middle;
-        // Angles are kept within half a turn from the middle.
-        let near = ends - 6.2831855 * round(ends * (1.0 / 6.2831855));
-        let parts = near * (1.0 / 3.1415927) + 0.5;
+        // What is behind turns further away from the viewer, on the same side: beyond the ends of the half-circle there is nothing.
+        let parts = ends * (1.0 / 3.1415927) + 0.5;
         let counts = occluder_weight(length(front), settings.radius) > shift.directions.y;
         let blocks = at.inside && seen.known && counts && elevation_sine(front, normal) > settings.bias;
         blocked |= select(0u, sector_bits(min(parts.x, parts.y), max(parts.x, parts.y)), blocks);
@@ -140,7 +140,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
         let rises = at.inside && seen.known && before > 0.0 && elevation_sine(towards, normal) > settings.bias;
         let blocks = rises && before < settings.thickness;
         visibility = min(visibility, select(1.0, 1.0 - occluder_weight(length(towards), settings.radius), blocks));
-        outlier = outlier || !at.inside || (rises && !blocks);
+        outlier = outlier || (rises && !blocks);
     }
     // What is blocked is known to be.
     return bent_add(sum, direction, visibility, outlier && visibility >= 1.0);
