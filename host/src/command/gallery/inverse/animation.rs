@@ -7,6 +7,7 @@ use super::super::transmittance::sky::Sky;
 use super::easel::{
     Board, Easel, Effort, Paint, Pose, Wish, daylight, decibels, fidelity, graded, pixels, solve_size,
 };
+use super::extended::extended;
 use crate::Lighting;
 use crate::command::CommandError;
 use crate::command::inverse::field::Field;
@@ -17,18 +18,20 @@ use glam::{Mat4, Vec2, Vec3};
 use std::time::Instant;
 
 /// Voxels.
-const SIZE: [u32; 3] = [72, 44, 36];
+const SIZE: [u32; 3] = [80, 49, 40];
 /// Half of the box, metres.
 const HALF: Vec3 = Vec3::new(2.0, 1.2222, 1.0);
 /// Of the animation.
-const FRAMES: u32 = 16;
+const FRAMES: u32 = 12;
 const FRAME_SIZE: [u32; 2] = [480, 270];
 /// Frames a second.
-const RATE: u16 = 10;
+const RATE: u16 = 8;
 const EXPOSURE: f32 = 1.0;
 /// Only where there is smoke, and everywhere.
 const BARE: Effort = Effort { iterations: 6, laplacian: 2e-3, empty: false };
-const SPREAD: Effort = Effort { iterations: 24, laplacian: 2e-2, empty: true };
+const SPREAD: Effort = Effort { iterations: 5, laplacian: 5e-3, empty: true };
+/// Voxels that differ by so much from how they began were seen.
+const SEEN: f32 = 0.02;
 
 fn pose(azimuth: f32) -> Pose {
     Pose::around(Vec3::ZERO, [7.0, 0.3], azimuth, 20.0)
@@ -63,7 +66,7 @@ fn paint(easel: &Easel<'_>, last: bool, board: &Board) -> Result<Vec<Vec3>, Comm
     let picture = easel.picture(&board.camera, &plain())?;
     let opacity: Vec<f32> = picture.through.iter().map(|through| 1.0 - through.element_sum() / 3.0).collect();
     let grade = if last {
-        Grade { shade: Vec3::new(0.10, 0.28, 0.45), light: Vec3::new(0.45, 1.0, 0.9), ..Grade::default() }
+        Grade { shade: Vec3::new(0.14, 0.10, 0.42), light: Vec3::new(0.72, 0.50, 1.08), ..Grade::default() }
     } else {
         Grade { shade: Vec3::new(0.45, 0.12, 0.25), light: Vec3::new(1.25, 0.55, 0.4), ..Grade::default() }
     };
@@ -76,6 +79,20 @@ fn paint(easel: &Easel<'_>, last: bool, board: &Board) -> Result<Vec<Vec3>, Comm
 
 fn plain() -> Paint {
     Paint::plain(0.85)
+}
+
+/// What was found where there is smoke that was seen, and everywhere else what is nearby: there a solver finds nothing but the Laplacian,
+/// which takes many iterations to come from afar.
+fn begun_with(easel: &Easel<'_>, found: &Paint) -> Paint {
+    let plain = plain();
+    let (albedo, emission) = (&found.albedo.values, &found.emission.values);
+    let dense = easel.extinction.values.iter().map(|value| value.x > 0.0);
+    let changed = albedo.iter().zip(emission).map(|(albedo, emission)| {
+        (*albedo - plain.albedo.values[0]).abs().max(emission.abs()).max_element() > SEEN
+    });
+    let seen: Vec<bool> = dense.zip(changed).map(|(dense, changed)| dense && changed).collect();
+    let [emission, albedo] = [&found.emission, &found.albedo].map(|field| extended(field, &seen));
+    Paint { emission, albedo }
 }
 
 fn blended(from: &Paint, to: &Paint, part: f32) -> Paint {
@@ -114,16 +131,16 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
             .zip([1.0, 0.25])
             .map(|((board, picture), weight)| Wish { board, picture, weights: vec![weight; picture.len()] })
             .collect();
-        let [bare, spread] =
-            [BARE, SPREAD].map(|effort| easel.solve(Solved::Both, &plain(), &wishes, effort));
-        found.push([bare?, spread?]);
+        let bare = easel.solve(Solved::Both, &plain(), &wishes, BARE)?;
+        let spread = easel.solve(Solved::Both, &begun_with(easel, &bare), &wishes, SPREAD)?;
+        found.push([bare, spread]);
     }
     let seconds = begun.elapsed().as_secs_f64();
 
     let about = "The first and the last frame of drifting smoke are painted and solved for; emission and albedo are blended in between, extinction moves on its own. The Laplacian carries colours into space that was empty in both frames; without it smoke that comes there has none.";
     let mut album = Album::new(&studio.out, folder, "Smoke between two frames".to_owned(), about.to_owned())?;
-    let frame = |time: f32, which: usize, size: [u32; 2]| -> Result<Vec<u8>, CommandError> {
-        let easel = keys[0].of(&puff(time), &lights)?;
+    let smoke = |time: f32| keys[0].of(&puff(time), &lights);
+    let frame = |easel: &Easel<'_>, time: f32, which: usize, size: [u32; 2]| {
         let board = Board::new(&pose(0.0), size, behind)?;
         let paint = blended(&found[0][which], &found[1][which], time);
         pixels(studio, &easel.shown(&board, &paint)?.0, size, EXPOSURE)
@@ -146,18 +163,22 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
             studio.size,
             &wanted,
         )?;
-        let shown = frame(if last { 1.0 } else { 0.0 }, 1, studio.size)?;
+        let shown = frame(easel, if last { 1.0 } else { 0.0 }, 1, studio.size)?;
         album.fact(format!("{name} frame"), decibels(fidelity(&shown, &wanted, &opacity)));
     }
+    let times = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+    let steps = times.map(&smoke).into_iter().collect::<Result<Vec<_>, _>>()?;
     for (which, name) in [(1, "diffused"), (0, "not diffused")] {
-        for step in 0..4_u8 {
-            let time = f32::from(step) / 3.0;
+        for (step, (time, easel)) in times.into_iter().zip(&steps).enumerate() {
             let file = format!("{}_{step}.png", name.replace(' ', "_"));
-            let shown = frame(time, which, studio.size)?;
+            let shown = frame(easel, time, which, studio.size)?;
             album.add_tile(file, format!("Colours {name}, {time:.2}"), studio.size, &shown)?;
         }
     }
-    let frames = (0..FRAMES).map(|i| frame(i as f32 / (FRAMES - 1) as f32, 1, FRAME_SIZE));
+    let frames = (0..FRAMES).map(|i| {
+        let time = i as f32 / (FRAMES - 1) as f32;
+        frame(&smoke(time)?, time, 1, FRAME_SIZE)
+    });
     let frames: Vec<Vec<u8>> = frames.collect::<Result<_, _>>()?;
     album.add_animation("animation.png", "Animated", FRAME_SIZE, &frames, RATE)?;
     album.fact("two frames, each with and without diffusion", format!("{seconds:.1} s"));
@@ -170,7 +191,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
 /// What is wanted from aside: the tint alone.
 fn tinted(easel: &Easel<'_>, last: bool, board: &Board) -> Result<Vec<Vec3>, CommandError> {
     let picture = easel.picture(&board.camera, &plain())?;
-    let tint = if last { Vec3::new(0.35, 0.85, 0.85) } else { Vec3::new(1.05, 0.42, 0.35) };
+    let tint = if last { Vec3::new(0.60, 0.42, 0.98) } else { Vec3::new(1.05, 0.42, 0.35) };
     let pixels = picture.radiance.iter().zip(&picture.through).zip(&board.background);
     Ok(pixels.map(|((color, through), behind)| *color * tint + *through * *behind).collect())
 }

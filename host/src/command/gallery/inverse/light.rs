@@ -25,10 +25,14 @@ const EXPOSURE: f32 = 1.0;
 const SIDES: u16 = 6;
 /// Discs that light comes from.
 const DISCS: u32 = 64;
-/// Columns and rows of the maps that are shown.
+/// Columns and rows of the map that was found.
 const MAP: [u32; 2] = [1280, 640];
 /// Directional lights that stand for a disc.
 const LIGHTS_A_DISC: u32 = 3;
+/// Directional lights that stand for the evening that is painted.
+const EVENING_LIGHTS: u32 = 48;
+/// Degrees of a view that was not painted.
+const BETWEEN: f32 = 30.0;
 const ALBEDO: f32 = 0.9;
 const EFFORT: Effort = Effort { iterations: 8, laplacian: 3e-3, empty: false };
 /// Of the light.
@@ -38,16 +42,27 @@ fn pose(azimuth: f32) -> Pose {
     Pose::around(Vec3::ZERO, [8.0, 1.4], azimuth, 27.0)
 }
 
-/// Threatening from one side and calm from the other.
-fn grade(azimuth: f32) -> Grade {
-    let threat = 0.5 + 0.5 * azimuth.to_radians().cos();
-    let mix = |calm: f32, threatening: f32| calm + (threatening - calm) * threat;
+/// Radiance of an evening, as somebody would paint it: a low sun on one side, a cold moon on the other, violet above.
+fn evening(way: Vec3) -> Vec3 {
+    if way.y <= 0.0 {
+        return Vec3::ZERO;
+    }
+    let lobe = |azimuth: f32, up: f32, power: i32| {
+        let (sine, cosine) = azimuth.to_radians().sin_cos();
+        way.dot(Vec3::new(sine, up, cosine).normalize()).max(0.0).powi(power)
+    };
+    let sky = Vec3::new(0.22, 0.12, 0.16).lerp(Vec3::new(0.16, 0.12, 0.42), way.y);
+    sky + lobe(-32.0, 0.45, 12) * Vec3::new(19.0, 7.2, 2.2) + lobe(150.0, 0.7, 8) * Vec3::new(0.5, 2.8, 4.6)
+}
+
+/// What no light does: more contrast, deeper and colder shades.
+fn grade() -> Grade {
     Grade {
-        contrast: mix(0.9, 1.35),
-        middle: mix(0.5, 0.6),
-        saturation: mix(1.0, 0.6),
-        shade: Vec3::new(0.75, 0.95, 1.15).lerp(Vec3::new(0.6, 0.12, 0.1), threat),
-        light: Vec3::new(0.95, 1.0, 1.05).lerp(Vec3::new(1.35, 0.42, 0.22), threat),
+        contrast: 1.2,
+        middle: 0.5,
+        saturation: 1.1,
+        shade: Vec3::new(0.75, 0.8, 1.1),
+        ..Grade::default()
     }
 }
 
@@ -70,10 +85,14 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     };
     let plain = Paint::plain(ALBEDO);
     let azimuths: Vec<f32> = (0..SIDES).map(|side| 360.0 * f32::from(side) / f32::from(SIDES)).collect();
+    let evening = Environment::from_function([128, 64], evening).map_err(CommandError::failure)?;
+    let lamps: Vec<Lighting> =
+        evening.sample_lights(EVENING_LIGHTS, 7).into_iter().map(Lighting::from).collect();
+    let model = easel.of(&volume, &lamps)?;
     let mut painted: Vec<(Board, Vec<Vec3>)> = Vec::new();
     for azimuth in &azimuths {
         let board = Board::new(&pose(*azimuth), solve_size(studio.size, COLUMNS), behind)?;
-        let target = paint(&easel, *azimuth, &board, &plain)?;
+        let target = paint(&model, &board, &plain)?;
         painted.push((board, target));
     }
     let wishes: Vec<Wish<'_>> = painted.iter().map(|(board, picture)| Wish::even(board, picture)).collect();
@@ -82,7 +101,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let mut coarse: Vec<(Board, Vec<Vec3>)> = Vec::new();
     for azimuth in &azimuths {
         let board = Board::new(&pose(*azimuth), solve_size(studio.size, 160), behind)?;
-        let target = paint(&easel, *azimuth, &board, &plain)?;
+        let target = paint(&model, &board, &plain)?;
         coarse.push((board, target));
     }
     let few: Vec<Wish<'_>> = coarse.iter().map(|(board, picture)| Wish::even(board, picture)).collect();
@@ -94,7 +113,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     let then = begun.elapsed().as_secs_f64();
 
     let about = format!(
-        "Six views of a cloud are graded: red and full of contrast from one side, calm from the other. {DISCS} discs of light on the upper hemisphere are solved for, and then emission and albedo in that light. Light alone cannot follow all that was painted, for it reaches the whole volume."
+        "Six views of a cloud at noon are repainted as of an evening: a low sun on one side, a cold moon on the other, and more contrast and deeper shades than any light makes. {DISCS} discs of light on the upper hemisphere are solved for, and then emission and albedo in that light, which adds the contrast that light alone cannot, for it reaches the whole volume."
     );
     let mut album = Album::new(&studio.out, folder, "Light for a cloud, then its volume".to_owned(), about)?;
     let show = |radiance: &[Vec3]| pixels(studio, radiance, studio.size, EXPOSURE);
@@ -102,7 +121,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     for azimuth in [0.0, 60.0, 180.0] {
         let board = Board::new(&pose(azimuth), studio.size, behind)?;
         let (before, opacity) = easel.shown(&board, &plain)?;
-        let wanted = show(&paint(&easel, azimuth, &board, &plain)?)?;
+        let wanted = show(&paint(&model, &board, &plain)?)?;
         let [lit, both] = [&plain, &changed].map(|paint| relit.shown(&board, paint));
         let (lit, both) = (show(&lit?.0)?, show(&both?.0)?);
         for (name, caption, shown) in [
@@ -118,42 +137,60 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         facts.push((format!("light, from {azimuth}°"), value(&lit)));
         facts.push((format!("light, then volume, from {azimuth}°"), value(&both)));
     }
-    let own = Environment::from_function(MAP, |way| {
-        let near = (way.dot(sun).max(0.0)).powi(200);
-        if way.y > 0.0 { sky.radiance(way, sun) + 20.0 * near } else { Vec3::splat(0.05) }
-    });
-    let map = found.discs.environment_of(&found.coefficients, MAP);
-    for (file, caption, map, exposure) in [
-        ("own.png", "The light of the original: sky and sun", own, EXPOSURE),
-        ("found.png", "The light that was found", map, 0.35),
+    let map = found.discs.environment_of(&found.coefficients, MAP).map_err(CommandError::failure)?;
+    let radiance = hemispheres([&evening, &map], studio.size);
+    album.add_tile(
+        "lights.png",
+        "Upper hemispheres: the light that was painted, and below it the light that was found",
+        studio.size,
+        &show(&radiance)?,
+    )?;
+    let board = Board::new(&pose(BETWEEN), studio.size, behind)?;
+    for (name, caption, seen) in [
+        ("original", "original", easel.shown(&board, &plain)),
+        ("light", "light", relit.shown(&board, &plain)),
+        ("light_volume", "light, then volume", relit.shown(&board, &changed)),
     ] {
-        let map = map.map_err(CommandError::failure)?;
-        let [width, height] = studio.size;
-        let place = |i: u32| Vec2::new((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
-        let scale = Vec2::new(MAP[0] as f32 / width as f32, MAP[1] as f32 / height as f32);
-        let radiance: Vec<Vec3> =
-            (0..width * height).map(|i| map.radiance(map.direction(place(i) * scale))).collect();
-        album.add_tile(file, caption, studio.size, &pixels(studio, &radiance, studio.size, exposure)?)?;
-    }
-    for (azimuth, paint, what) in [(30.0, &plain, "light"), (30.0, &changed, "light, then volume")] {
-        let board = Board::new(&pose(azimuth), studio.size, behind)?;
-        let shown = show(&relit.shown(&board, paint)?.0)?;
-        let file = format!("{azimuth}_between_{}.png", what.replace(", ", "_").replace(' ', "_"));
-        album.add_tile(file, format!("In between, from {azimuth}°: {what}"), studio.size, &shown)?;
+        let file = format!("{BETWEEN}_between_{name}.png");
+        album.add_tile(
+            file,
+            format!("In between, from {BETWEEN}°: {caption}"),
+            studio.size,
+            &show(&seen?.0)?,
+        )?;
     }
     facts.into_iter().for_each(|(what, value)| album.fact(what, value));
     album.fact(format!("{DISCS} lights from six views"), format!("{seconds:.1} s"));
     album.fact("emission and albedo in them", format!("{then:.1} s"));
     album.finish_with_sheet(
         4,
-        "From three of six sides: original, target, light, light then volume; below the light that was and that was found (latitude and longitude), and a view in between",
+        "From three of six sides: original, target, light, light then volume; below, the lights that were painted and found (latitude and longitude), and the same from in between",
     )
 }
 
+/// Upper halves of two maps, one above the other, their longitudes across. Bright light keeps its hue.
+fn hemispheres(maps: [&Environment; 2], [width, height]: [u32; 2]) -> Vec<Vec3> {
+    let half = height.div_ceil(2);
+    let gap = height / 180;
+    let radiance = |i: u32| {
+        let (x, y) = (i % width, i / width);
+        let row = y % half;
+        if row + gap >= half {
+            return Vec3::ZERO;
+        }
+        let map = maps[usize::from(y >= half)];
+        let [columns, rows] = map.size().map(|side| side as f32);
+        let part = Vec2::new((x as f32 + 0.5) / width as f32, 0.5 * (row as f32 + 0.5) / half as f32);
+        let color = map.radiance(map.direction(part * Vec2::new(columns, rows)));
+        color * (0.8 / (0.8 + color.element_sum() / 3.0))
+    };
+    (0..width * height).map(radiance).collect()
+}
+
 /// The target of a view.
-fn paint(easel: &Easel<'_>, azimuth: f32, board: &Board, plain: &Paint) -> Result<Vec<Vec3>, CommandError> {
+fn paint(easel: &Easel<'_>, board: &Board, plain: &Paint) -> Result<Vec<Vec3>, CommandError> {
     let picture = easel.picture(&board.camera, plain)?;
-    Ok(graded(&grade(azimuth), board, &picture).pixels().to_vec())
+    Ok(graded(&grade(), board, &picture).pixels().to_vec())
 }
 
 /// Solves for the light.
@@ -188,7 +225,7 @@ fn light(easel: &Easel<'_>, wishes: &[Wish<'_>]) -> Result<Found, CommandError> 
         });
     }
     let start = vec![0.2; 4 * DISCS as usize];
-    let unknown = LightUnknown { volumes, start, smallness: 0.02, strategy: LightStrategy::Columns };
+    let unknown = LightUnknown { volumes, start, smallness: 0.005, strategy: LightStrategy::Columns };
     let mut solver = LightSolver::new(gpu, shaders, projector, targets, unknown)?;
     for _ in 0..ITERATIONS {
         solver.iterate(gpu)?;

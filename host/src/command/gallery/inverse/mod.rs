@@ -3,6 +3,7 @@
 
 mod animation;
 mod easel;
+mod extended;
 mod glass;
 mod light;
 mod logos;

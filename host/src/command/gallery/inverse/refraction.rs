@@ -28,7 +28,7 @@ const EXPOSURE: f32 = 0.9;
 /// Of pictures that are solved for.
 const COLUMNS: u32 = 288;
 /// Pixels without paint count so much.
-const ELSEWHERE: f32 = 0.25;
+const ELSEWHERE: f32 = 0.15;
 
 fn pose(azimuth: f32) -> Pose {
     Pose::around(Vec3::ZERO, [6.5, 0.0], azimuth, 21.0)
@@ -140,10 +140,10 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     };
     let solved: Vec<bool> = (0..SIDE * SIDE * SIDE).map(inside).collect();
     let start = numbers(&vec![Vec3::splat(0.02); solved.len()], RGB);
-    let regulariser = Regulariser { laplacian: 2e-4, ..Regulariser::default() };
+    let regulariser = Regulariser { laplacian: 1e-4, ..Regulariser::default() };
     let unknown = Unknown { size: [SIDE; 3], solved, start, high: 1e30, regulariser };
     let mut solver = Solver::new(gpu, shaders, projector, targets, &[unknown])?;
-    for _ in 0..8 {
+    for _ in 0..12 {
         solver.iterate(gpu)?;
     }
     let values = solver.solutions(gpu)?.into_iter().next().unwrap_or_default();

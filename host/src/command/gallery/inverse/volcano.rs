@@ -15,7 +15,7 @@ use crate::inverse::Solved;
 use glam::{Mat4, Vec3};
 use std::time::Instant;
 
-const EFFORT: Effort = Effort { iterations: 8, laplacian: 2e-3, empty: false };
+const EFFORT: Effort = Effort { iterations: 6, laplacian: 1e-2, empty: false };
 const EXPOSURE: f32 = 1.0;
 /// Painted from so many sides.
 const SIDES: u16 = 6;
@@ -26,8 +26,8 @@ fn pose(azimuth: f32) -> Pose {
 
 fn sky() -> Sky {
     Sky {
-        zenith: Vec3::new(0.012, 0.022, 0.055),
-        horizon: Vec3::new(0.11, 0.085, 0.105),
+        zenith: Vec3::new(0.026, 0.046, 0.115),
+        horizon: Vec3::new(0.15, 0.117, 0.14),
         glow: Vec3::new(0.34, 0.14, 0.045),
         haze: 0.32,
     }
@@ -38,7 +38,7 @@ fn smoke() -> Volume {
     let Volume { size, values, world_from_unit } = plume([64, 96, 64], 3);
     let wide = 2.5;
     let world_from_unit = Mat4::from_scale(Vec3::new(wide, 1.0, wide)) * world_from_unit;
-    let values = values.into_iter().map(|value| 0.75 * value).collect();
+    let values = values.into_iter().map(|value| 0.5 * value).collect();
     Volume { size, values, world_from_unit }
 }
 
