@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One reference a system, under the system's name, and one for each shared building block.
 
+pub mod ambient;
 pub mod camera;
 pub mod fourier;
 pub mod inverse;
