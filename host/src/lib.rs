@@ -3,9 +3,10 @@
 //!
 //! [`Gpu`] opens a device on WebGPU's default limits. [`Shaders`] composes modules and passes.
 //! [`Pass`] turns a pass into pipelines whose resources are bound by name. Each system is a module
-//! of plain functions that record passes into an encoder: [`inverse`], [`painterly`], [`scattering`],
-//! [`splatting`], [`stylize`], [`transmittance`].
+//! of plain functions that record passes into an encoder: [`ambient`], [`inverse`], [`painterly`],
+//! [`scattering`], [`splatting`], [`stylize`], [`transmittance`].
 
+pub mod ambient;
 #[cfg(feature = "command")]
 pub mod command;
 pub mod core;

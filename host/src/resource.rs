@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Buffers, textures and samplers that know enough of themselves to be bound by name and read back.
 
+mod sampler;
 mod texels;
+
+pub use sampler::Sampler;
 
 use crate::gpu::{Gpu, GpuError};
 use encase::ShaderType;
@@ -186,6 +189,37 @@ impl Texture {
         )
     }
 
+    /// Like [`Texture::storage`] with `levels` levels, each half as wide and high as the one before.
+    pub(crate) fn storage_levels(
+        gpu: &Gpu,
+        size: [u32; 2],
+        format: wgpu::TextureFormat,
+        levels: u32,
+    ) -> Self {
+        let raw = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: levels,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { raw, view, dimension: wgpu::TextureViewDimension::D2 }
+    }
+
+    /// One level, to be bound where a pass takes a single one. Its size is still that of the whole.
+    pub(crate) fn of_level(&self, level: u32) -> Self {
+        let view = self.raw.create_view(&wgpu::TextureViewDescriptor {
+            base_mip_level: level,
+            mip_level_count: Some(1),
+            ..Default::default()
+        });
+        Self { raw: self.raw.clone(), view, dimension: self.dimension }
+    }
+
     /// A 3D texture that passes read.
     pub fn volume(gpu: &Gpu, size: [u32; 3], format: wgpu::TextureFormat) -> Self {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING;
@@ -351,58 +385,6 @@ impl Texture {
         gpu.submit(encoder)?;
         let bytes = map(gpu, &copy)?;
         Ok(bytes.chunks_exact(padded as usize).map(|row| row[..tight as usize].to_vec()).collect())
-    }
-}
-
-/// A sampler.
-pub struct Sampler {
-    /// The sampler itself.
-    pub raw: wgpu::Sampler,
-    /// True for a comparison sampler.
-    pub comparison: bool,
-}
-
-impl Sampler {
-    /// Linear, clamped to the edge in u and repeating in v: for maps whose rows may wrap.
-    pub fn rows(gpu: &Gpu) -> Self {
-        Self::create(
-            gpu,
-            &wgpu::SamplerDescriptor {
-                address_mode_v: wgpu::AddressMode::Repeat,
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            },
-        )
-    }
-
-    /// Linear, clamped to the edge.
-    pub fn linear(gpu: &Gpu) -> Self {
-        Self::create(
-            gpu,
-            &wgpu::SamplerDescriptor {
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            },
-        )
-    }
-
-    /// A comparison sampler for shadow maps with forward depth.
-    pub fn shadow(gpu: &Gpu) -> Self {
-        Self::create(
-            gpu,
-            &wgpu::SamplerDescriptor {
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                compare: Some(wgpu::CompareFunction::LessEqual),
-                ..Default::default()
-            },
-        )
-    }
-
-    fn create(gpu: &Gpu, descriptor: &wgpu::SamplerDescriptor<'_>) -> Self {
-        Self { raw: gpu.device.create_sampler(descriptor), comparison: descriptor.compare.is_some() }
     }
 }
 

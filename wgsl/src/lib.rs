@@ -202,6 +202,9 @@ modules! {
     stylize::tf_diffuse [],
     stylize::tf_layers [],
     stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
+    ambient::octahedral ["core::finite"],
+    ambient::environment [],
+    ambient::cone_light ["ambient::octahedral", "core::finite"],
 }
 
 passes! {
@@ -283,6 +286,8 @@ passes! {
     stylize/transfer_layer,
     stylize/transfer,
     stylize/evaluate,
+    ambient/reduce_environment,
+    ambient/convolve_cones,
 }
 
-systems![core, transmittance, painterly, inverse, splatting, scattering, stylize];
+systems![core, transmittance, painterly, inverse, splatting, scattering, stylize, ambient];
