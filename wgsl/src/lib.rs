@@ -207,6 +207,9 @@ modules! {
     stylize::tf_diffuse [],
     stylize::tf_layers [],
     stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
+    ambient::octahedral ["core::finite"],
+    ambient::environment [],
+    ambient::cone_light ["ambient::octahedral", "core::finite"],
 }
 
 passes! {
@@ -228,6 +231,9 @@ passes! {
     ambient/blur_bent,
     ambient/halve_geometry,
     ambient/upsample_bent,
+    ambient/reduce_environment,
+    ambient/convolve_cones,
+    ambient/shade_bent,
     painterly/iso_raycast,
     painterly/shade,
     painterly/solid_bricks,

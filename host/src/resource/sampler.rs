@@ -37,6 +37,20 @@ impl Sampler {
         )
     }
 
+    /// Linear within and between levels, repeating in u and clamped to the edge in v: for latitude-longitude maps.
+    pub fn around(gpu: &Gpu) -> Self {
+        Self::create(
+            gpu,
+            &wgpu::SamplerDescriptor {
+                address_mode_u: wgpu::AddressMode::Repeat,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            },
+        )
+    }
+
     /// A comparison sampler for shadow maps with forward depth.
     pub fn shadow(gpu: &Gpu) -> Self {
         Self::create(

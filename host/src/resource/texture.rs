@@ -66,6 +66,37 @@ impl Texture {
         )
     }
 
+    /// Like [`Texture::storage`] with `levels` levels, each half as wide and high as the one before.
+    pub(crate) fn storage_levels(
+        gpu: &Gpu,
+        size: [u32; 2],
+        format: wgpu::TextureFormat,
+        levels: u32,
+    ) -> Self {
+        let raw = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: levels,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { raw, view, dimension: wgpu::TextureViewDimension::D2 }
+    }
+
+    /// One level, to be bound where a pass takes a single one. Its size is still that of the whole.
+    pub(crate) fn of_level(&self, level: u32) -> Self {
+        let view = self.raw.create_view(&wgpu::TextureViewDescriptor {
+            base_mip_level: level,
+            mip_level_count: Some(1),
+            ..Default::default()
+        });
+        Self { raw: self.raw.clone(), view, dimension: self.dimension }
+    }
+
     /// A 3D texture that passes read.
     pub fn volume(gpu: &Gpu, size: [u32; 3], format: wgpu::TextureFormat) -> Self {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING;

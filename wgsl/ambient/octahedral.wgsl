@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::ambient::octahedral
+// summary: Directions as texels of a square: an octahedron unfolded about the y axis, with a border for seamless filtering.
+// source: Engelhardt and Dachsbacher, "Octahedron environment maps" (2008).
+// note: +y lies in the middle of the square, -y in its four corners, and the horizon joins the middles of its edges; x runs along
+// note: columns, z along rows. A map of `side` texels a side has one texel more all around, which repeats the texel that lies across
+// note: the edge: each edge is folded at its middle. So a bilinear sampler finds no seam, and clamping never matters.
+// note: A direction that is not finite, or shorter than 1e-30, counts as +y.
+
+#import airlight::core::finite::is_finite
+
+/// -1 for negative numbers, else 1.
+fn signs(x: vec2<f32>) -> vec2<f32> {
+    return select(vec2<f32>(-1.0), vec2<f32>(1.0), x >= vec2<f32>(0.0));
+}
+
+/// Where a direction of any length lies in the square without border, -1..1.
+fn octahedral_place(direction: vec3<f32>) -> vec2<f32> {
+    let greatest = max(max(abs(direction.x), abs(direction.y)), abs(direction.z));
+    let finite = is_finite(direction.x) && is_finite(direction.y) && is_finite(direction.z);
+    if !finite || greatest < 1e-30 {
+        return vec2<f32>(0.0);
+    }
+    // Scaled first: the sum of three great numbers may be infinite.
+    let scaled = direction / greatest;
+    let projected = scaled / (abs(scaled.x) + abs(scaled.y) + abs(scaled.z));
+    if projected.y >= 0.0 {
+        return projected.xz;
+    }
+    return (1.0 - abs(projected.zx)) * signs(projected.xz);
+}
+
+/// The unit vector of a place in the square, -1..1.
+fn octahedral_direction(place: vec2<f32>) -> vec3<f32> {
+    let height = 1.0 - abs(place.x) - abs(place.y);
+    let below = (1.0 - abs(place.yx)) * signs(place);
+    let flat_part = select(below, place, height >= 0.0);
+    return normalize(vec3<f32>(flat_part.x, height, flat_part.y));
+}
+
+/// Coordinates 0..1 in a map of `side` texels with its border, for a linear sampler.
+fn octahedral_coordinates(direction: vec3<f32>, side: u32) -> vec2<f32> {
+    let place = 0.5 * octahedral_place(direction) + 0.5;
+    return (place * f32(side) + 1.0) / f32(side + 2u);
+}
+
+/// The texel 0..side-1 without border that `texel` 0..side+1 of the map is, or repeats.
+fn octahedral_inner(texel: vec2<u32>, side: u32) -> vec2<u32> {
+    var inner = vec2<i32>(texel) - 1;
+    let last = i32(side) - 1;
+    if inner.x < 0 || inner.x > last {
+        inner = vec2<i32>(clamp(inner.x, 0, last), last - inner.y);
+    }
+    if inner.y < 0 || inner.y > last {
+        inner = vec2<i32>(last - inner.x, clamp(inner.y, 0, last));
+    }
+    return vec2<u32>(inner);
+}
+
+/// The unit vector of the middle of texel 0..side+1 of the map, that of the repeated texel in the border.
+fn octahedral_texel_direction(texel: vec2<u32>, side: u32) -> vec3<f32> {
+    let inner = vec2<f32>(octahedral_inner(texel, side));
+    return octahedral_direction((2.0 * inner + 1.0) / f32(side) - 1.0);
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// summary: An environment map convolved with cones of eight angles, for each texel of octahedral maps.
+// source: O. Klehm, thesis, Section 3.3.3, Eq. 3.9; its t is wrong as printed, 1 / (1 - cos(angle)): see ambient/cone_light.
+// note: L_c is t / pi times the integral of L cos over the cap. With t = 1 / sin^2(angle) that is the mean of L under the weight cos,
+// note: and it is computed as one: the sum of weights stands for pi sin^2(angle), so that constant light is exact at any resolution.
+// note: The exact form sums over all texels of the map; a texel that the edge of a cone crosses counts by the part inside,
+// note: along the gradient of the cosine: the map should have 64 rows or more. An invocation is a texel of the cones' maps, x alone, `(side + 2)^2` of them.
+// note: With SAMPLED the rings between neighbouring angles are sampled instead, RING_DIRECTIONS each, evenly in solid angle times
+// note: cosine, at the level of the chain whose texels are as large as a direction's share; cones add up their rings. For light
+// note: that moves: edges of cones are as soft as those texels, and rows near the poles less filtered than the others.
+// definition SAMPLED: rings are sampled in a chain of levels.
+// binding radiance: linear RGB, finite, latitude-longitude as in ambient/environment: rgba32float, with SAMPLED rgba16float with levels, each half the one before.
+// binding radiance_sampler: linear within and between levels, repeating in u; with SAMPLED only.
+// binding cones: out, rgba16float, 8 layers of side + 2 texels squared, as ambient/cone_light reads them.
+
+#import airlight::ambient::octahedral::octahedral_texel_direction
+#ifdef SAMPLED
+#import airlight::ambient::environment::{HALF_TURN, environment_coordinates}
+#import airlight::ambient::cone_light::{CONE_LAYERS, cone_layer_angle}
+#else
+#import airlight::ambient::environment::{HALF_TURN, environment_direction, zone_height}
+#import airlight::ambient::cone_light::cone_layer_angle
+#endif
+
+@group(#{GROUP}) @binding(0) var radiance: texture_2d<f32>;
+#ifdef SAMPLED
+@group(#{GROUP}) @binding(1) var radiance_sampler: sampler;
+#endif
+@group(#{GROUP}) @binding(2) var cones: texture_storage_2d_array<rgba16float, write>;
+
+/// The greatest half float.
+const MOST_HALF: f32 = 65504.0;
+
+fn store_cone(texel: vec2<u32>, layer: u32, light: vec3<f32>) {
+    textureStore(cones, texel, layer, vec4<f32>(min(light, vec3<f32>(MOST_HALF)), 1.0));
+}
+
+#ifdef SAMPLED
+
+/// Directions in a ring.
+const RING_DIRECTIONS: u32 = 32u;
+/// From one direction's azimuth to the next: the golden angle, radians.
+const GOLDEN_ANGLE: f32 = 2.3999632;
+
+@compute @workgroup_size(64)
+fn convolve_cones(@builtin(global_invocation_id) id: vec3<u32>) {
+    let width = textureDimensions(cones).x;
+    let texel = vec2<u32>(id.x % width, id.x / width);
+    if texel.y >= width {
+        return;
+    }
+    let axis = octahedral_texel_direction(texel, width - 2u);
+    // Level steps of the map that all directions of a ring share.
+    let texel_side = HALF_TURN / f32(textureDimensions(radiance).y);
+    let other = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(axis.y) > 0.9);
+    let right = normalize(cross(other, axis));
+    let up = cross(axis, right);
+    var sum = vec3<f32>(0.0);
+    var inner = 0.0;
+    for (var layer = 0u; layer < CONE_LAYERS; layer++) {
+        let angle = cone_layer_angle(layer);
+        let outer = sin(angle) * sin(angle);
+        let solid_angle = 2.0 * HALF_TURN * (cos(angle - cone_layer_angle(0u)) - cos(angle));
+        let level = max(0.0, log2(sqrt(solid_angle / f32(RING_DIRECTIONS)) / texel_side));
+        var ring = vec3<f32>(0.0);
+        for (var i = 0u; i < RING_DIRECTIONS; i++) {
+            // Even in the square of the sine, which is what the cosine's weight asks for.
+            let square = mix(inner, outer, (f32(i) + 0.5) / f32(RING_DIRECTIONS));
+            let around = GOLDEN_ANGLE * f32(layer * RING_DIRECTIONS + i);
+            let across = sqrt(square) * (cos(around) * right + sin(around) * up);
+            let direction = across + sqrt(1.0 - square) * axis;
+            ring += textureSampleLevel(radiance, radiance_sampler, environment_coordinates(direction), level).rgb;
+        }
+        sum += (outer - inner) / f32(RING_DIRECTIONS) * ring;
+        inner = outer;
+        store_cone(texel, layer, sum / outer);
+    }
+}
+
+#else
+
+/// Divisor where a map is so coarse that a cone holds no texel's middle.
+const LEAST_WEIGHT: f32 = 1e-20;
+/// Texels of the map that are read together.
+const TILE: u32 = 64u;
+
+/// Unit vector towards each texel, and its solid angle up to a factor that all share.
+var<workgroup> tile_directions: array<vec4<f32>, TILE>;
+/// Radiance of each, and the square of the tangent of its elevation.
+var<workgroup> tile_radiance: array<vec4<f32>, TILE>;
+
+/// Puts texel `index` of the map, row by row, into place `local` of the tile.
+fn fetch(index: u32, local: u32) {
+    let size = textureDimensions(radiance);
+    let texel = vec2<u32>(index % size.x, index / size.x);
+    if texel.y >= size.y {
+        // Behind the last texel of the map, where that is no multiple of the tile.
+        tile_directions[local] = vec4<f32>(0.0);
+        tile_radiance[local] = vec4<f32>(0.0);
+        return;
+    }
+    let towards = environment_direction((vec2<f32>(texel) + 0.5) / vec2<f32>(size));
+    let rows = f32(size.y);
+    let height = zone_height(f32(texel.y) / rows, f32(texel.y + 1u) / rows);
+    let tangent_square = towards.y * towards.y / dot(towards.xz, towards.xz);
+    tile_directions[local] = vec4<f32>(towards, height * rows);
+    tile_radiance[local] = vec4<f32>(textureLoad(radiance, texel, 0).rgb, tangent_square);
+}
+
+@compute @workgroup_size(64)
+fn convolve_cones(
+    @builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32
+) {
+    let width = textureDimensions(cones).x;
+    let texel = vec2<u32>(id.x % width, id.x / width);
+    let axis = octahedral_texel_direction(min(texel, vec2<u32>(width - 1u)), width - 2u);
+    let size = textureDimensions(radiance);
+    let sharpness = f32(size.y) / HALF_TURN;
+    // Cosines of the eight angles, the narrow four and the wide four, as all that follows.
+    let narrow_edge = cos(vec4<f32>(cone_layer_angle(0u), cone_layer_angle(1u), cone_layer_angle(2u), cone_layer_angle(3u)));
+    let wide_edge = cos(vec4<f32>(cone_layer_angle(4u), cone_layer_angle(5u), cone_layer_angle(6u), cone_layer_angle(7u)));
+    var narrow_weight = vec4<f32>(0.0);
+    var narrow_red = vec4<f32>(0.0);
+    var narrow_green = vec4<f32>(0.0);
+    var narrow_blue = vec4<f32>(0.0);
+    var wide_weight = vec4<f32>(0.0);
+    var wide_red = vec4<f32>(0.0);
+    var wide_green = vec4<f32>(0.0);
+    var wide_blue = vec4<f32>(0.0);
+    let count = size.x * size.y;
+    for (var begin = 0u; begin < count; begin += TILE) {
+        workgroupBarrier();
+        fetch(begin + local, local);
+        workgroupBarrier();
+        for (var i = 0u; i < TILE; i++) {
+            let towards = tile_directions[i];
+            let cosine = dot(axis, towards.xyz);
+            if cosine > 0.0 {
+                let light = tile_radiance[i];
+                // The cosine's change over the texel, up and sideways: its gradient has the sine's length, and the
+                // part of it along the row is shortened by the cosine of the elevation.
+                let sideways = axis.x * towards.z - axis.z * towards.x;
+                let change = 1.0 - cosine * cosine - sideways * sideways * light.w;
+                let steepness = sharpness * inverseSqrt(max(change, 1e-6));
+                let weight = cosine * towards.w;
+                let narrow = weight * saturate((cosine - narrow_edge) * steepness + 0.5);
+                let wide = weight * saturate((cosine - wide_edge) * steepness + 0.5);
+                narrow_weight += narrow;
+                narrow_red += light.x * narrow;
+                narrow_green += light.y * narrow;
+                narrow_blue += light.z * narrow;
+                wide_weight += wide;
+                wide_red += light.x * wide;
+                wide_green += light.y * wide;
+                wide_blue += light.z * wide;
+            }
+        }
+    }
+    if texel.y >= width {
+        return;
+    }
+    for (var layer = 0u; layer < 4u; layer++) {
+        let narrow = vec3<f32>(narrow_red[layer], narrow_green[layer], narrow_blue[layer]);
+        store_cone(texel, layer, narrow / max(narrow_weight[layer], LEAST_WEIGHT));
+        let wide = vec3<f32>(wide_red[layer], wide_green[layer], wide_blue[layer]);
+        store_cone(texel, layer + 4u, wide / max(wide_weight[layer], LEAST_WEIGHT));
+    }
+}
+
+#endif
