@@ -15,6 +15,8 @@ use airlight_tests::linear::Vec3;
 use seen::{SeenImages, cameras, many, seen, sharp};
 
 const SIZE: [u32; 2] = [128, 128];
+/// Where 8 pixels are to be narrow beside a wall that fills the picture.
+const FINE: [u32; 2] = [384, 384];
 const ALL: [Sampling; 4] = [Sampling::Hemisphere, Sampling::Disc, Sampling::Horizon, Sampling::Bitmask];
 
 /// Where a ray meets the plane y = 0 from above.
@@ -63,11 +65,11 @@ fn a_wall_hides_half_of_the_hemisphere() {
         let floor = floor(origin, direction).map(|way| (way, Vec3::new(0.0, 1.0, 0.0)));
         [wall, floor].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let place = Vec3::new(0.5, 0.0, 0.0);
-    for (name, camera) in cameras(Vec3::new(2.5, 3.0, 0.4), place, 2.0) {
-        let images = seen(camera, SIZE, &surface);
+    let place = Vec3::new(0.13, 0.0, 0.0);
+    for (name, camera) in cameras(Vec3::new(5.0, 6.0, 0.8), place, 3.5).into_iter().skip(1) {
+        let images = seen(camera, FINE, &surface);
         for sampling in [Sampling::Hemisphere, Sampling::Bitmask] {
-            let [bend, length, open] = found(&images, sampling, 40.0, place, Vec3::new(1.0, 1.0, 0.0));
+            let [bend, length, open] = found(&images, sampling, 20.0, place, Vec3::new(1.0, 1.0, 0.0));
             let [printed, exact] = angles(length);
             println!(
                 "{name} {sampling:?}: {bend:.2} degrees, length {length:.4}, open {open:.4}, cones {printed:.1} {exact:.1}"
@@ -89,12 +91,12 @@ fn a_corner_leaves_an_eighth_of_the_sphere() {
         });
         met.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let place = Vec3::new(0.5, 0.0, 0.5);
-    for (name, camera) in cameras(Vec3::new(2.5, 3.0, 2.2), place, 2.0) {
-        let images = seen(camera, SIZE, &surface);
+    let place = Vec3::new(0.13, 0.0, 0.13);
+    for (name, camera) in cameras(Vec3::new(5.0, 6.0, 4.4), place, 3.5).into_iter().skip(1) {
+        let images = seen(camera, FINE, &surface);
         for sampling in [Sampling::Hemisphere, Sampling::Bitmask] {
             // The mean over an octant is 1/2 along each axis.
-            let [bend, length, open] = found(&images, sampling, 40.0, place, Vec3::new(1.0, 1.0, 1.0));
+            let [bend, length, open] = found(&images, sampling, 20.0, place, Vec3::new(1.0, 1.0, 1.0));
             println!("{name} {sampling:?}: {bend:.2} degrees, length {length:.4}, open {open:.4}");
             assert!(bend < 3.0 && (open - 0.25).abs() < 0.03);
             let expected = angles(0.75_f64.sqrt());

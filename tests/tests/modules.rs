@@ -120,7 +120,6 @@ fn systems_know_only_whom_they_may() {
         match system {
             "core" => &["core"],
             "transmittance" => &["core", "transmittance"],
-            "ambient" => &["core", "ambient"],
             "painterly" => &["core", "painterly"],
             "ambient" => &["core", "ambient"],
             "scattering" => &["core", "transmittance", "scattering"],

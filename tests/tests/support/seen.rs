@@ -93,7 +93,7 @@ pub fn sharp(sampling: Sampling) -> BentForm {
 
 /// Many directions in every 8x8 pixels.
 pub fn many(radius: f32) -> OcclusionSettings {
-    OcclusionSettings { samples: 16, steps: 128, side: 8, bias: 0.01, ..OcclusionSettings::new(radius) }
+    OcclusionSettings { samples: 8, steps: 96, side: 8, bias: 0.01, ..OcclusionSettings::new(radius) }
 }
 
 /// Cameras that look at a place from `eye`: forward and reversed depth, and parallel rays.
