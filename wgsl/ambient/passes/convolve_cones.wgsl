@@ -4,7 +4,8 @@
 // note: L_c is t / pi times the integral of L cos over the cap. With t = 1 / sin^2(angle) that is the mean of L under the weight cos,
 // note: and it is computed as one: the sum of weights stands for pi sin^2(angle), so that constant light is exact at any resolution.
 // note: The exact form sums over all texels of the map; a texel that the edge of a cone crosses counts by the part inside,
-// note: along the gradient of the cosine: the map should have 64 rows or more. An invocation is a texel of the cones' maps, x alone, `(side + 2)^2` of them.
+// note: along the gradient of the cosine: the map should have 64 rows or more, and at most
+// note: 512x256 texels for software drivers that end loops. An invocation is a texel of the cones' maps, x alone, `(side + 2)^2` of them.
 // note: With SAMPLED the rings between neighbouring angles are sampled instead, RING_DIRECTIONS each, evenly in solid angle times
 // note: cosine, at the level of the chain whose texels are as large as a direction's share; cones add up their rings. For light
 // note: that moves: edges of cones are as soft as those texels, and rows near the poles less filtered than the others.
@@ -19,7 +20,6 @@
 #import airlight::ambient::cone_light::{CONE_LAYERS, cone_layer_angle}
 #else
 #import airlight::ambient::environment::{HALF_TURN, environment_direction, zone_height}
-#import airlight::ambient::cone_light::cone_layer_angle
 #endif
 
 @group(#{GROUP}) @binding(0) var radiance: texture_2d<f32>;
@@ -81,6 +81,10 @@ fn convolve_cones(@builtin(global_invocation_id) id: vec3<u32>) {
 
 /// Divisor where a map is so coarse that a cone holds no texel's middle.
 const LEAST_WEIGHT: f32 = 1e-20;
+/// Cosines of the angles of the narrow four layers: 11.25, 22.5, 33.75 and 45 degrees.
+const NARROW_EDGES: vec4<f32> = vec4<f32>(0.98078528, 0.92387953, 0.83146961, 0.70710678);
+/// Those of the wide four: 56.25, 67.5, 78.75 and 90 degrees.
+const WIDE_EDGES: vec4<f32> = vec4<f32>(0.55557023, 0.38268343, 0.19509032, 0.0);
 /// Texels of the map that are read together.
 const TILE: u32 = 64u;
 
@@ -107,6 +111,51 @@ fn fetch(index: u32, local: u32) {
     tile_radiance[local] = vec4<f32>(textureLoad(radiance, texel, 0).rgb, tangent_square);
 }
 
+/// Sums over texels for the four narrow cones and the four wide ones.
+struct Sums {
+    /// Weights.
+    narrow_weight: vec4<f32>,
+    /// Weights times red.
+    narrow_red: vec4<f32>,
+    /// Weights times green.
+    narrow_green: vec4<f32>,
+    /// Weights times blue.
+    narrow_blue: vec4<f32>,
+    /// Weights.
+    wide_weight: vec4<f32>,
+    /// Weights times red.
+    wide_red: vec4<f32>,
+    /// Weights times green.
+    wide_green: vec4<f32>,
+    /// Weights times blue.
+    wide_blue: vec4<f32>,
+}
+
+/// Adds texel `i` of the tile to the cones about `axis`; `sharpness` in texels a radian.
+fn gather(sums: ptr<function, Sums>, axis: vec3<f32>, sharpness: f32, i: u32) {
+    let towards = tile_directions[i];
+    let cosine = dot(axis, towards.xyz);
+    if cosine > 0.0 {
+        let light = tile_radiance[i];
+        // The cosine's change over the texel, up and sideways: its gradient has the sine's length, and the part of it
+        // along the row is shortened by the cosine of the elevation.
+        let sideways = axis.x * towards.z - axis.z * towards.x;
+        let change = 1.0 - cosine * cosine - sideways * sideways * light.w;
+        let steepness = sharpness * inverseSqrt(max(change, 1e-6));
+        let weight = cosine * towards.w;
+        let narrow = weight * saturate((cosine - NARROW_EDGES) * steepness + 0.5);
+        let wide = weight * saturate((cosine - WIDE_EDGES) * steepness + 0.5);
+        (*sums).narrow_weight += narrow;
+        (*sums).narrow_red += light.x * narrow;
+        (*sums).narrow_green += light.y * narrow;
+        (*sums).narrow_blue += light.z * narrow;
+        (*sums).wide_weight += wide;
+        (*sums).wide_red += light.x * wide;
+        (*sums).wide_green += light.y * wide;
+        (*sums).wide_blue += light.z * wide;
+    }
+}
+
 @compute @workgroup_size(64)
 fn convolve_cones(
     @builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32
@@ -116,54 +165,28 @@ fn convolve_cones(
     let axis = octahedral_texel_direction(min(texel, vec2<u32>(width - 1u)), width - 2u);
     let size = textureDimensions(radiance);
     let sharpness = f32(size.y) / HALF_TURN;
-    // Cosines of the eight angles, the narrow four and the wide four, as all that follows.
-    let narrow_edge = cos(vec4<f32>(cone_layer_angle(0u), cone_layer_angle(1u), cone_layer_angle(2u), cone_layer_angle(3u)));
-    let wide_edge = cos(vec4<f32>(cone_layer_angle(4u), cone_layer_angle(5u), cone_layer_angle(6u), cone_layer_angle(7u)));
-    var narrow_weight = vec4<f32>(0.0);
-    var narrow_red = vec4<f32>(0.0);
-    var narrow_green = vec4<f32>(0.0);
-    var narrow_blue = vec4<f32>(0.0);
-    var wide_weight = vec4<f32>(0.0);
-    var wide_red = vec4<f32>(0.0);
-    var wide_green = vec4<f32>(0.0);
-    var wide_blue = vec4<f32>(0.0);
+    var sums = Sums();
     let count = size.x * size.y;
     for (var begin = 0u; begin < count; begin += TILE) {
         workgroupBarrier();
         fetch(begin + local, local);
         workgroupBarrier();
-        for (var i = 0u; i < TILE; i++) {
-            let towards = tile_directions[i];
-            let cosine = dot(axis, towards.xyz);
-            if cosine > 0.0 {
-                let light = tile_radiance[i];
-                // The cosine's change over the texel, up and sideways: its gradient has the sine's length, and the
-                // part of it along the row is shortened by the cosine of the elevation.
-                let sideways = axis.x * towards.z - axis.z * towards.x;
-                let change = 1.0 - cosine * cosine - sideways * sideways * light.w;
-                let steepness = sharpness * inverseSqrt(max(change, 1e-6));
-                let weight = cosine * towards.w;
-                let narrow = weight * saturate((cosine - narrow_edge) * steepness + 0.5);
-                let wide = weight * saturate((cosine - wide_edge) * steepness + 0.5);
-                narrow_weight += narrow;
-                narrow_red += light.x * narrow;
-                narrow_green += light.y * narrow;
-                narrow_blue += light.z * narrow;
-                wide_weight += wide;
-                wide_red += light.x * wide;
-                wide_green += light.y * wide;
-                wide_blue += light.z * wide;
-            }
+        // Four at a time: a software driver ends loops after 65535 turns in all.
+        for (var i = 0u; i < TILE; i += 4u) {
+            gather(&sums, axis, sharpness, i);
+            gather(&sums, axis, sharpness, i + 1u);
+            gather(&sums, axis, sharpness, i + 2u);
+            gather(&sums, axis, sharpness, i + 3u);
         }
     }
     if texel.y >= width {
         return;
     }
     for (var layer = 0u; layer < 4u; layer++) {
-        let narrow = vec3<f32>(narrow_red[layer], narrow_green[layer], narrow_blue[layer]);
-        store_cone(texel, layer, narrow / max(narrow_weight[layer], LEAST_WEIGHT));
-        let wide = vec3<f32>(wide_red[layer], wide_green[layer], wide_blue[layer]);
-        store_cone(texel, layer + 4u, wide / max(wide_weight[layer], LEAST_WEIGHT));
+        let narrow = vec3<f32>(sums.narrow_red[layer], sums.narrow_green[layer], sums.narrow_blue[layer]);
+        store_cone(texel, layer, narrow / max(sums.narrow_weight[layer], LEAST_WEIGHT));
+        let wide = vec3<f32>(sums.wide_red[layer], sums.wide_green[layer], sums.wide_blue[layer]);
+        store_cone(texel, layer + 4u, wide / max(sums.wide_weight[layer], LEAST_WEIGHT));
     }
 }
 
