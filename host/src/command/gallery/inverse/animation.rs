@@ -137,7 +137,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     }
     let seconds = begun.elapsed().as_secs_f64();
 
-    let about = "The first and the last frame of drifting smoke are painted and solved for; emission and albedo are blended in between, extinction moves on its own. The Laplacian carries colours into space that was empty in both frames; without it smoke that comes there has none.";
+    let about = "The first and the last frame of drifting smoke are painted and solved for; emission and albedo are blended in between, extinction moves on its own. Space that was empty or hidden begins with the colours nearby, which the Laplacian keeps smooth; without them smoke that comes there has none.";
     let mut album = Album::new(&studio.out, folder, "Smoke between two frames".to_owned(), about.to_owned())?;
     let smoke = |time: f32| keys[0].of(&puff(time), &lights);
     let frame = |easel: &Easel<'_>, time: f32, which: usize, size: [u32; 2]| {
