@@ -22,14 +22,14 @@ const SIZE: [u32; 3] = [80, 49, 40];
 /// Half of the box, metres.
 const HALF: Vec3 = Vec3::new(2.0, 1.2222, 1.0);
 /// Of the animation.
-const FRAMES: u32 = 12;
+const FRAMES: u32 = 10;
 const FRAME_SIZE: [u32; 2] = [480, 270];
 /// Frames a second.
-const RATE: u16 = 8;
+const RATE: u16 = 7;
 const EXPOSURE: f32 = 1.0;
 /// Only where there is smoke, and everywhere.
-const BARE: Effort = Effort { iterations: 6, laplacian: 2e-3, empty: false };
-const SPREAD: Effort = Effort { iterations: 5, laplacian: 5e-3, empty: true };
+const BARE: Effort = Effort { iterations: 5, laplacian: 2e-3, empty: false };
+const SPREAD: Effort = Effort { iterations: 3, laplacian: 5e-3, empty: true };
 /// Voxels that differ by so much from how they began were seen.
 const SEEN: f32 = 0.02;
 

@@ -34,7 +34,7 @@ const EVENING_LIGHTS: u32 = 48;
 /// Degrees of a view that was not painted.
 const BETWEEN: f32 = 30.0;
 const ALBEDO: f32 = 0.9;
-const EFFORT: Effort = Effort { iterations: 8, laplacian: 3e-3, empty: false };
+const EFFORT: Effort = Effort { iterations: 5, laplacian: 3e-3, empty: false };
 /// Of the light.
 const ITERATIONS: u32 = 30;
 
