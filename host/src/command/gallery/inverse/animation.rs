@@ -22,14 +22,14 @@ const SIZE: [u32; 3] = [80, 49, 40];
 /// Half of the box, metres.
 const HALF: Vec3 = Vec3::new(2.0, 1.2222, 1.0);
 /// Of the animation.
-const FRAMES: u32 = 12;
+const FRAMES: u32 = 10;
 const FRAME_SIZE: [u32; 2] = [480, 270];
 /// Frames a second.
-const RATE: u16 = 8;
+const RATE: u16 = 7;
 const EXPOSURE: f32 = 1.0;
 /// Only where there is smoke, and everywhere.
-const BARE: Effort = Effort { iterations: 6, laplacian: 2e-3, empty: false };
-const SPREAD: Effort = Effort { iterations: 5, laplacian: 5e-3, empty: true };
+const BARE: Effort = Effort { iterations: 5, laplacian: 2e-3, empty: false };
+const SPREAD: Effort = Effort { iterations: 3, laplacian: 5e-3, empty: true };
 /// Voxels that differ by so much from how they began were seen.
 const SEEN: f32 = 0.02;
 
@@ -137,7 +137,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     }
     let seconds = begun.elapsed().as_secs_f64();
 
-    let about = "The first and the last frame of drifting smoke are painted and solved for; emission and albedo are blended in between, extinction moves on its own. The Laplacian carries colours into space that was empty in both frames; without it smoke that comes there has none.";
+    let about = "The first and the last frame of drifting smoke are painted and solved for; emission and albedo are blended in between, extinction moves on its own. Space that was empty or hidden begins with the colours nearby, which the Laplacian keeps smooth; without them smoke that comes there has none.";
     let mut album = Album::new(&studio.out, folder, "Smoke between two frames".to_owned(), about.to_owned())?;
     let smoke = |time: f32| keys[0].of(&puff(time), &lights);
     let frame = |easel: &Easel<'_>, time: f32, which: usize, size: [u32; 2]| {

@@ -25,7 +25,7 @@ const EXPOSURE: f32 = 1.0;
 const SIDES: u16 = 6;
 /// Discs that light comes from.
 const DISCS: u32 = 64;
-/// Columns and rows of the map that was found.
+/// Columns and rows of the maps that are shown.
 const MAP: [u32; 2] = [1280, 640];
 /// Directional lights that stand for a disc.
 const LIGHTS_A_DISC: u32 = 3;
@@ -34,7 +34,7 @@ const EVENING_LIGHTS: u32 = 48;
 /// Degrees of a view that was not painted.
 const BETWEEN: f32 = 30.0;
 const ALBEDO: f32 = 0.9;
-const EFFORT: Effort = Effort { iterations: 8, laplacian: 3e-3, empty: false };
+const EFFORT: Effort = Effort { iterations: 5, laplacian: 3e-3, empty: false };
 /// Of the light.
 const ITERATIONS: u32 = 30;
 
@@ -85,9 +85,11 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
     };
     let plain = Paint::plain(ALBEDO);
     let azimuths: Vec<f32> = (0..SIDES).map(|side| 360.0 * f32::from(side) / f32::from(SIDES)).collect();
-    let evening = Environment::from_function([128, 64], evening).map_err(CommandError::failure)?;
+    let [known, painted_map] = [[128, 64], MAP].map(|size| Environment::from_function(size, evening));
+    let (known, painted_map) =
+        (known.map_err(CommandError::failure)?, painted_map.map_err(CommandError::failure)?);
     let lamps: Vec<Lighting> =
-        evening.sample_lights(EVENING_LIGHTS, 7).into_iter().map(Lighting::from).collect();
+        known.sample_lights(EVENING_LIGHTS, 7).into_iter().map(Lighting::from).collect();
     let model = easel.of(&volume, &lamps)?;
     let mut painted: Vec<(Board, Vec<Vec3>)> = Vec::new();
     for azimuth in &azimuths {
@@ -138,7 +140,7 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         facts.push((format!("light, then volume, from {azimuth}°"), value(&both)));
     }
     let map = found.discs.environment_of(&found.coefficients, MAP).map_err(CommandError::failure)?;
-    let radiance = hemispheres([&evening, &map], studio.size);
+    let radiance = hemispheres([&painted_map, &map], studio.size);
     album.add_tile(
         "lights.png",
         "Upper hemispheres: the light that was painted, and below it the light that was found",
