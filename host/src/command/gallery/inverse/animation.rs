@@ -10,7 +10,6 @@ use super::easel::{
 use super::extended::extended;
 use crate::Lighting;
 use crate::command::CommandError;
-use crate::command::inverse::field::Field;
 use crate::command::inverse::paint::{Grade, Logo, Mark};
 use crate::data::{Volume, fractal_noise, turbulence};
 use crate::inverse::Solved;
@@ -96,11 +95,10 @@ fn begun_with(easel: &Easel<'_>, found: &Paint) -> Paint {
 }
 
 fn blended(from: &Paint, to: &Paint, part: f32) -> Paint {
-    let mix = |from: &Field, to: &Field| {
-        let values = from.values.iter().zip(&to.values).map(|(from, to)| from.lerp(*to, part));
-        Field { size: from.size, values: values.collect() }
-    };
-    Paint { emission: mix(&from.emission, &to.emission), albedo: mix(&from.albedo, &to.albedo) }
+    Paint {
+        emission: from.emission.blended(&to.emission, part),
+        albedo: from.albedo.blended(&to.albedo, part),
+    }
 }
 
 /// The section.

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Blurs, halves and settings of bent normals, and input that is broken.
+#![allow(clippy::unwrap_used)]
+
+#[path = "support/gpu.rs"]
+mod gpu;
+
+#[path = "support/seen.rs"]
+mod seen;
+
+use airlight::Texture;
+use airlight::ambient::{
+    AmbientError, BentForm, BentPasses, Blurring, OcclusionSettings, Sampling, SurfaceImages,
+};
+use airlight_tests::linear::Vec3;
+use gpu::{gpu, shaders};
+use seen::{SeenImages, cameras, seen, sharp};
+use wgpu::TextureFormat::{R32Float, Rgba32Float};
+
+const SIZE: [u32; 2] = [75, 53];
+const ALL: [Sampling; 4] = [Sampling::Hemisphere, Sampling::Disc, Sampling::Horizon, Sampling::Bitmask];
+
+/// A floor with a wall, its normals as bumpy as `bumps` says.
+fn yard(bumps: f64) -> SeenImages {
+    let surface = move |origin: Vec3, direction: Vec3| {
+        let wall = (-0.6 - origin.x) / direction.x;
+        let floor = -origin.y / direction.y;
+        let bump =
+            |place: Vec3| Vec3::new(bumps * (40.0 * place.x).sin(), 1.0, bumps * (37.0 * place.z).sin());
+        let floor = (direction.y < 0.0).then(|| (floor, bump(origin + direction * floor).normalised()));
+        let wall = (direction.x < 0.0 && wall > 0.0).then_some((wall, Vec3::new(1.0, 0.0, 0.0)));
+        [floor, wall].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let [_, (_, reversed), _] = cameras(Vec3::new(1.5, 1.8, 0.6), Vec3::default(), 1.0);
+    seen(reversed, SIZE, &surface)
+}
+
+fn settings() -> OcclusionSettings {
+    OcclusionSettings::new(0.6)
+}
+
+#[test]
+fn openness_alone_is_the_openness_beside_bent_normals() {
+    let _turn = gpu::turn();
+    let images = yard(0.1);
+    for sampling in ALL {
+        for blurring in [Blurring::Off, Blurring::Difference] {
+            let form = BentForm { blurring, ..sharp(sampling) };
+            let both = images.bent(form, &settings());
+            let passes =
+                BentPasses::new(gpu(), shaders(), BentForm { occlusion_only: true, ..form }).unwrap();
+            let mut encoder = gpu().encoder();
+            let alone = passes.record(gpu(), &mut encoder, images.images(), &settings()).unwrap();
+            gpu().submit(encoder).unwrap();
+            let alone = alone.read(gpu()).unwrap();
+            let pairs = both.iter().zip(&alone).map(|((_, open), alone)| (open - f64::from(*alone)).abs());
+            // One is stored as halves, twice where it is blurred.
+            let worst = pairs.fold(0.0, f64::max);
+            assert!(worst < 2e-3, "{sampling:?} {blurring:?}: {worst}");
+            assert!(alone.iter().any(|open| *open < 0.8), "{sampling:?}: nothing is hidden");
+        }
+    }
+}
+
+#[test]
+fn a_blur_of_differences_keeps_bumps_and_a_plain_one_loses_them() {
+    let _turn = gpu::turn();
+    // Bumps are only in the normals: rays see a flat floor, so an open place's bent normal is its bump's normal.
+    let images = yard(0.25);
+    let degrees = |blurring| {
+        let bent = images.bent(BentForm { blurring, ..sharp(Sampling::Hemisphere) }, &settings());
+        let far_from_the_wall = images.surfaces.iter().zip(&bent).filter_map(|(surface, (mean, _))| {
+            let (place, normal) = (*surface)?;
+            let cosine = mean.normalised().dot(normal);
+            (place.x > 0.3).then(|| cosine.clamp(-1.0, 1.0).acos().to_degrees())
+        });
+        let all: Vec<f64> = far_from_the_wall.collect();
+        assert!(all.len() > 300);
+        all.iter().sum::<f64>() / all.len() as f64
+    };
+    let [difference, plain] = [degrees(Blurring::Difference), degrees(Blurring::Plain)];
+    println!("from the bumpy normals: {difference:.2} degrees, by a plain blur {plain:.2}");
+    assert!(difference < 3.0 && plain > 2.0 * difference, "{difference} {plain}");
+}
+
+#[test]
+fn half_the_resolution_is_nearly_the_whole() {
+    let _turn = gpu::turn();
+    let images = yard(0.0);
+    let form = BentForm { blurring: Blurring::Difference, ..sharp(Sampling::Hemisphere) };
+    let whole = images.bent(form, &settings());
+    let halved = images.bent(BentForm { halved: true, ..form }, &settings());
+    let mut sum = [0.0; 2];
+    let mut count = 0.0;
+    for (surface, (whole, halved)) in images.surfaces.iter().zip(whole.iter().zip(&halved)) {
+        if surface.is_none() {
+            continue;
+        }
+        sum[0] += (whole.0 - halved.0).length();
+        sum[1] += (whole.1 - halved.1).abs();
+        count += 1.0;
+    }
+    println!("mean difference of directions {:.4}, of openness {:.4}", sum[0] / count, sum[1] / count);
+    assert!(sum[0] / count < 0.03 && sum[1] / count < 0.03);
+}
+
+#[test]
+fn broken_depths_and_normals_leave_nothing_that_is_not_finite() {
+    let _turn = gpu::turn();
+    let images = yard(0.2);
+    let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3.0, 1e30, 0.0];
+    let mut depths = images.depths.clone();
+    let mut normals = images.normals.read(gpu()).unwrap();
+    for (index, depth) in depths.iter_mut().enumerate().filter(|(index, _)| index % 7 == 0) {
+        *depth = wild[index % wild.len()];
+    }
+    for (index, value) in normals.iter_mut().enumerate().filter(|(index, _)| index % 5 == 0) {
+        *value = wild[index % wild.len()];
+    }
+    normals[..400].fill(0.0);
+    let image = |format, values: &[f32]| {
+        let texture = Texture::storage(gpu(), SIZE, format);
+        texture.write(gpu(), values).unwrap();
+        texture
+    };
+    let (depth, normals) = (image(R32Float, &depths), image(Rgba32Float, &normals));
+    let seen = SurfaceImages { camera: &images.camera, depth: &depth, normals: &normals };
+    for sampling in ALL {
+        for halved in [false, true] {
+            let form = BentForm { blurring: Blurring::Difference, halved, ..sharp(sampling) };
+            let passes = BentPasses::new(gpu(), shaders(), form).unwrap();
+            let mut encoder = gpu().encoder();
+            let bent = passes.record(gpu(), &mut encoder, seen, &settings()).unwrap();
+            gpu().submit(encoder).unwrap();
+            let found = bent.read(gpu()).unwrap();
+            assert!(found.iter().all(|value| value.is_finite()), "{sampling:?} {halved}");
+            assert!(found.chunks_exact(4).all(|texel| (0.0..=1.001).contains(&texel[3])));
+        }
+    }
+}
+
+#[test]
+fn impossible_settings_are_refused() {
+    let _turn = gpu::turn();
+    let images = yard(0.0);
+    let passes = BentPasses::new(gpu(), shaders(), sharp(Sampling::Hemisphere)).unwrap();
+    let possible = settings();
+    for wrong in [
+        OcclusionSettings { samples: 0, ..possible },
+        OcclusionSettings { samples: 257, ..possible },
+        OcclusionSettings { steps: 0, ..possible },
+        OcclusionSettings { side: 0, ..possible },
+        OcclusionSettings { side: 17, ..possible },
+        OcclusionSettings { radius: 0.0, ..possible },
+        OcclusionSettings { radius: f32::NAN, ..possible },
+        OcclusionSettings { thickness: -1.0, ..possible },
+        OcclusionSettings { bias: 1.5, ..possible },
+    ] {
+        let found = passes.record(gpu(), &mut gpu().encoder(), images.images(), &wrong);
+        assert!(matches!(found, Err(AmbientError::Setting(_))), "{wrong:?}");
+    }
+}
