@@ -24,7 +24,7 @@ use glam::{Mat4, Vec2, Vec3};
 use gpu::{gpu, reference_camera, shaders, vector};
 use std::path::Path;
 
-const SIZE: [u32; 2] = [160, 120];
+const SIZE: [u32; 2] = [112, 84];
 
 /// A model on a floor, and where it is seen from.
 fn standing(name: &str, turn: f32) -> (Mesh, PerspectiveView) {
@@ -104,7 +104,7 @@ fn bent_normals_and_cones_are_nearer_to_the_truth_than_occlusion() {
             let texels = map.texels().iter().map(|t| Vec3::from(t.map(|v| v as f32))).collect();
             let host_map = Environment::new([32, 16], texels).unwrap();
             let settings = Settings {
-                directions: 256,
+                directions: 128,
                 // The approximations of the reference are not looked at.
                 light_directions: 1,
                 reach: Reach::UNLIMITED,
