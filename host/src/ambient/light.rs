@@ -137,6 +137,15 @@ impl ConeLight {
         })
     }
 
+    /// Whether an environment map has the shape that is needed, before there is a device.
+    ///
+    /// # Errors
+    /// [`ConeLightError::Shape`].
+    pub fn check(environment: &Environment) -> Result<(), ConeLightError> {
+        let [width, height] = environment.size();
+        check_shape(width, height)
+    }
+
     /// How the light is preconvolved.
     pub fn form(&self) -> ConeLightForm {
         self.form

@@ -41,7 +41,10 @@ impl OcclusionSettings {
     }
 
     /// Whether they are possible.
-    pub(super) fn check(&self) -> Result<(), AmbientError> {
+    ///
+    /// # Errors
+    /// [`AmbientError::Setting`].
+    pub fn check(&self) -> Result<(), AmbientError> {
         let above = f32::MIN_POSITIVE..=1e15;
         in_range("radius of occlusion", self.radius, above.clone(), "above 0 and at most 1e15 metres")?;
         in_range("thickness of occluders", self.thickness, above, "above 0 and at most 1e15 metres")?;

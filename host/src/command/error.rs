@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One sentence to the person at the keyboard, and the exit code that goes with it.
 
+use crate::ambient::{AmbientError, ConeLightError};
 use crate::core::{CameraError, LightError, TransferError, TransferFileError, VolumeTextureError};
 use crate::data::MediumFileError;
 use crate::painterly::{PainterlyError, PaintingError, StrokeError};
@@ -260,6 +261,32 @@ impl From<StrokeError> for CommandError {
             E::OtherSize { .. } | E::Curvature | E::Transform | E::Pass(_) => return Self::failure(error),
         };
         Self::misuse(flag, error)
+    }
+}
+
+impl From<AmbientError> for CommandError {
+    fn from(error: AmbientError) -> Self {
+        use AmbientError as E;
+        let flag = match &error {
+            E::Setting(OutOfRange { name: "radius of occlusion" | "thickness of occluders", .. }) => {
+                "--radius"
+            }
+            E::Setting(OutOfRange { name: "number of directions", .. }) => "--samples",
+            E::Setting(OutOfRange { name: "number of steps", .. }) => "--steps",
+            E::Setting(OutOfRange { name: "side of the sampling pattern", .. }) => "--interleave",
+            E::Setting(_) | E::Pass(_) | E::Gpu(_) => return Self::failure(error),
+        };
+        Self::misuse(flag, error)
+    }
+}
+
+impl From<ConeLightError> for CommandError {
+    fn from(error: ConeLightError) -> Self {
+        use ConeLightError as E;
+        match error {
+            E::Shape { .. } | E::TooLarge { .. } => Self::failure(format!("--environment: {error}")),
+            E::Side(_) | E::Pass(_) | E::Gpu(_) => Self::failure(error),
+        }
     }
 }
 

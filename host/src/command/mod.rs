@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The command-line program: parsing, progress, exit codes.
 
+mod ambient;
 mod bench;
 mod camera;
+mod environments;
 mod error;
 mod fit;
 mod gallery;
 mod info;
 mod inverse;
 mod list;
+mod models;
 mod painterly;
 mod parse;
 mod progress;
@@ -61,6 +64,8 @@ enum Command {
     Splatting(Box<splatting::Options>),
     /// Volumes that look from every side as somebody painted them.
     Inverse(inverse::Options),
+    /// Meshes of yours in the light of an environment map, by bent normals and cones in screen space.
+    Ambient(ambient::Options),
     /// Any compute or full-screen pass on arrays of yours, by binding name.
     Run(run::Options),
     /// Ratios against baselines, interleaved, with the error of both sides.
@@ -83,6 +88,7 @@ pub fn main() -> ExitCode {
         Command::Painterly(options) => painterly::run(&options, quiet),
         Command::Splatting(options) => splatting::run(&options, quiet),
         Command::Inverse(options) => inverse::run(&options, quiet),
+        Command::Ambient(options) => ambient::run(&options, quiet),
         Command::Run(options) => run::run(&options),
         Command::Bench(options) => bench::run(&options, quiet),
         Command::List(options) => list::list(&options),

@@ -7,6 +7,7 @@
 //! elevation 90 - 180 degrees · (y + 0.5) / height. Radiance is constant over a texel.
 
 mod discs;
+mod resampling;
 mod sampling;
 
 pub use discs::{DiscLights, disc_lights};
@@ -171,9 +172,25 @@ fn direction_at([width, height]: [u32; 2], place: Vec2) -> Vec3 {
 /// [`EnvironmentError::File`]; also where radiance is negative or not finite.
 #[cfg(feature = "command")]
 pub fn load_environment(path: impl AsRef<std::path::Path>) -> Result<Environment, EnvironmentError> {
-    let path = path.as_ref();
+    map_of(path.as_ref(), crate::formats::read_linear_picture(path.as_ref()))
+}
+
+/// A map from the bytes of a file that is part of the program. `name` stands for its path in errors.
+///
+/// # Errors
+/// As [`load_environment`].
+#[cfg(feature = "command")]
+pub fn environment_from_bytes(name: &str, bytes: &[u8]) -> Result<Environment, EnvironmentError> {
+    map_of(name.as_ref(), crate::formats::linear_picture_from_bytes(name, bytes))
+}
+
+#[cfg(feature = "command")]
+fn map_of(
+    path: &std::path::Path,
+    picture: Result<crate::formats::PicturePixels, crate::formats::PictureError>,
+) -> Result<Environment, EnvironmentError> {
     let failed = |reason: String| EnvironmentError::File { path: path.to_owned(), reason };
-    let picture = crate::formats::read_linear_picture(path).map_err(|error| failed(error.reason))?;
+    let picture = picture.map_err(|error| failed(error.reason))?;
     let texels = picture.darkened();
     Environment::new(picture.size, texels).map_err(|error| failed(error.to_string()))
 }

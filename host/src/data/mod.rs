@@ -25,9 +25,9 @@ mod volume;
 
 pub use blue_noise::{BLUE_NOISE_SIDE, blue_noise};
 pub use clouds::{cloud_bank, smoke};
-#[cfg(feature = "command")]
-pub use environment::load_environment;
 pub use environment::{DiscLights, Environment, EnvironmentError, EnvironmentLight, disc_lights};
+#[cfg(feature = "command")]
+pub use environment::{environment_from_bytes, load_environment};
 pub use fields::{marschner_lobb, quadric_field, sphere_field, torus_field};
 pub use lathe::{lathe, tube};
 #[cfg(feature = "command")]

@@ -2,6 +2,9 @@
 //! Pictures that are read as scene-linear light: PNG, OpenEXR and Radiance.
 
 use glam::Vec3;
+use image::ImageFormat;
+use std::borrow::Cow;
+use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
@@ -36,13 +39,24 @@ impl PicturePixels {
 /// # Errors
 /// [`PictureError`].
 pub fn read_linear_picture(path: impl AsRef<Path>) -> Result<PicturePixels, PictureError> {
-    let (mut picture, encoded) = read(path.as_ref())?;
+    Ok(linear(read(path.as_ref())?))
+}
+
+/// Like [`read_linear_picture`] from the bytes of a file that is part of the program. `name` stands for its path.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn linear_picture_from_bytes(name: &str, bytes: &[u8]) -> Result<PicturePixels, PictureError> {
+    Ok(linear(decode(Path::new(name), |_| Ok(bytes.into()))?))
+}
+
+fn linear((mut picture, encoded): (PicturePixels, bool)) -> PicturePixels {
     if encoded {
         for [r, g, b, _] in &mut picture.pixels {
             [r, g, b].into_iter().for_each(|value| *value = crate::data::linear_from_srgb(*value));
         }
     }
-    Ok(picture)
+    picture
 }
 
 /// Like [`read_linear_picture`] for what is no light, such as weights: numbers as they are, those of a .png over the greatest.
@@ -53,19 +67,32 @@ pub fn read_picture_values(path: impl AsRef<Path>) -> Result<PicturePixels, Pict
     read(path.as_ref()).map(|(picture, _)| picture)
 }
 
-/// The picture, and whether its numbers stand for sRGB.
+/// The picture of a file, and whether its numbers stand for sRGB.
 fn read(path: &Path) -> Result<(PicturePixels, bool), PictureError> {
+    decode(path, |path| {
+        let bytes = std::fs::read(path).map(Cow::Owned);
+        bytes.map_err(|error| match error.kind() {
+            ErrorKind::NotFound => "there is no such file".to_owned(),
+            _ => error.to_string(),
+        })
+    })
+}
+
+/// The picture of the bytes that a file has, and whether its numbers stand for sRGB. The name says the format.
+fn decode<'a>(
+    path: &Path,
+    bytes: impl FnOnce(&Path) -> Result<Cow<'a, [u8]>, String>,
+) -> Result<(PicturePixels, bool), PictureError> {
     let failed = |reason: String| PictureError { path: path.to_owned(), reason };
-    let encoded = match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
-        Some("png") => true,
-        Some("exr" | "hdr") => false,
+    let (format, encoded) = match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
+        Some("png") => (ImageFormat::Png, true),
+        Some("exr") => (ImageFormat::OpenExr, false),
+        Some("hdr") => (ImageFormat::Hdr, false),
         _ => return Err(failed("its name ends in neither .png nor .exr nor .hdr".to_owned())),
     };
-    if !path.exists() {
-        return Err(failed("there is no such file".to_owned()));
-    }
+    let bytes = bytes(path).map_err(failed)?;
     // The parsers are not ours; a panic in one is a broken file like any other.
-    let picture = catch_unwind(AssertUnwindSafe(|| image::open(path)))
+    let picture = catch_unwind(AssertUnwindSafe(|| image::load_from_memory_with_format(&bytes, format)))
         .map_err(|_| failed("its parser gave up".to_owned()))?
         .map_err(|error| failed(error.to_string()))?
         .into_rgba32f();

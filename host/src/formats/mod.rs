@@ -13,7 +13,9 @@ mod whole;
 
 pub use animation::write_animation;
 pub use array::{Array, ArrayData};
-pub use linear_picture::{PictureError, PicturePixels, read_linear_picture, read_picture_values};
+pub use linear_picture::{
+    PictureError, PicturePixels, linear_picture_from_bytes, read_linear_picture, read_picture_values,
+};
 pub use npy::{ArrayError, read_npy, write_npy};
 pub use picture::{write_exr, write_png};
 pub use toml_file::TomlFileError;
