@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! `airlight bench`: ratios against baselines, interleaved in one run, with the error of both sides.
 
+mod ambient;
 pub mod baselines;
 mod choices;
 mod inverse;
@@ -80,7 +81,8 @@ struct Report {
     rows: Vec<Row>,
 }
 
-const SYSTEMS: [&str; 6] = ["inverse", "painterly", "scattering", "splatting", "stylize", "transmittance"];
+const SYSTEMS: [&str; 7] =
+    ["ambient", "inverse", "painterly", "scattering", "splatting", "stylize", "transmittance"];
 
 /// Runs the command.
 pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
@@ -103,6 +105,9 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         print(&more);
         rows.extend(more);
     };
+    if asked("ambient") {
+        add(ambient::rows(&gpu, &shaders, quiet)?);
+    }
     if asked("inverse") {
         add(inverse::rows(&gpu, &shaders, quiet)?);
         if options.tables {
