@@ -53,7 +53,7 @@ fn traced(mesh: &Mesh) -> Scene {
 }
 
 /// The picture of a method: linear RGB, row after row.
-fn drawn(view: &PerspectiveView, mesh: &Mesh, map: &Environment, method: Method, printed: bool) -> Vec<f32> {
+fn drawn(view: &PerspectiveView, mesh: &Mesh, light: &ConeLight, method: Method, printed: bool) -> Vec<f32> {
     let camera = Camera::new(&(*view).into(), SIZE).unwrap();
     let mesh = mesh.clone().with_albedo(Vec3::ONE);
     let geometry = GeometryPass::new(gpu(), shaders())
@@ -67,7 +67,6 @@ fn drawn(view: &PerspectiveView, mesh: &Mesh, map: &Environment, method: Method,
         occlusion_only: false,
         halved: false,
     };
-    let light = ConeLight::new(gpu(), shaders(), map, ConeLightForm { side: 32, sampled: false }).unwrap();
     let mut encoder = gpu().encoder();
     let settings = OcclusionSettings { thickness: 1.0, ..OcclusionSettings::new(1.5) };
     let bent = BentPasses::new(gpu(), shaders(), form).unwrap();
@@ -103,6 +102,8 @@ fn bent_normals_and_cones_are_nearer_to_the_truth_than_occlusion() {
             let map: ReferenceEnvironment = reference_map(&real_map(file)).resized(16);
             let texels = map.texels().iter().map(|t| Vec3::from(t.map(|v| v as f32))).collect();
             let host_map = Environment::new([32, 16], texels).unwrap();
+            let form = ConeLightForm { side: 32, sampled: false };
+            let light = ConeLight::new(gpu(), shaders(), &host_map, form).unwrap();
             let settings = Settings {
                 directions: 128,
                 // The approximations of the reference are not looked at.
@@ -113,7 +114,7 @@ fn bent_normals_and_cones_are_nearer_to_the_truth_than_occlusion() {
                 brightness: Brightness::Cosine,
             };
             let truth = picture(&scene, &map, &points, SIZE[0] as usize, &settings);
-            let of = |method, printed| error(&drawn(&view, &mesh, &host_map, method, printed), &truth);
+            let of = |method, printed| error(&drawn(&view, &mesh, &light, method, printed), &truth);
             let occlusion = of(Method::Occlusion, false);
             println!("{name} {file}: occlusion {occlusion:.4}");
             for method in [Method::Normals, Method::Cones, Method::ExactCones] {
