@@ -85,6 +85,13 @@ impl Definitions {
         self.set(name, true)
     }
 
+    /// With those names that are asked for.
+    #[must_use]
+    pub fn flags(self, flags: &[(&str, bool)]) -> Self {
+        let asked = flags.iter().filter(|(_, asked)| *asked);
+        asked.fold(self, |all, (name, _)| all.flag(*name))
+    }
+
     /// With everything of `other`, which wins where both define a name.
     #[must_use]
     pub fn merge(mut self, other: &Definitions) -> Self {

@@ -64,9 +64,9 @@ fn cone_angle(mean_length: f32) -> f32 {
 
 /// Half-angle of the cone whose directions have a mean of this length, radians 0..pi/2; 0 has no cone.
 fn cone_angle_exact(mean_length: f32) -> f32 {
-    // The half-angle formula keeps digits where acos has none left.
-    let sine = sqrt(clamp(1.0 - mean_length, 0.0, 0.5));
-    return select(2.0 * asin(sine), 0.0, mean_length <= 0.0);
+    // Sine and cosine of half of it: their angle keeps digits where acos of the length has none left.
+    let squared = clamp(mean_length, 0.5, 1.0);
+    return select(2.0 * atan2(sqrt(1.0 - squared), sqrt(squared)), 0.0, mean_length <= 0.0);
 }
 
 /// A mean direction times openness: with it in place of a normal, occlusion is in the shading (thesis 3.4).

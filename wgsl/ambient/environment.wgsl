@@ -21,7 +21,7 @@ fn environment_coordinates(direction: vec3<f32>) -> vec2<f32> {
     // The angle of the null vector is undefined: at the poles any column will do.
     let level = select(direction.xz, vec2<f32>(0.0, -1.0), all(direction.xz == vec2<f32>(0.0)));
     let right_of_middle = atan2(level.x, -level.y);
-    let down = acos(clamp(direction.y, -1.0, 1.0));
+    let down = atan2(max(length(direction.xz), 1e-20), direction.y);
     return vec2<f32>(0.5 + 0.5 * right_of_middle / HALF_TURN, down / HALF_TURN);
 }
 

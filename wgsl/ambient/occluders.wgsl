@@ -50,7 +50,7 @@ struct OpenSlice {
 fn open_slice(normal: vec3<f32>, tangent: vec3<f32>, horizon_sine: f32) -> OpenSlice {
     let sine = clamp(horizon_sine, 0.0, 1.0);
     let cosine = sqrt(1.0 - sine * sine);
-    let along = 0.5 * (acos(sine) - sine * cosine);
+    let along = 0.5 * (atan2(cosine, sine) - sine * cosine);
     return OpenSlice(tangent * along + normal * (0.5 * cosine * cosine), 1.0 - sine);
 }
 

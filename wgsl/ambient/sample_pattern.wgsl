@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::ambient::sample_pattern
 // summary: Directions about a normal, other ones for each pixel of a repeated square.
-// source: Keller and Heidrich, "Interleaved sampling" (2001), as in thesis 3.4; Roberts, the R2 sequence (2018); Duff et al., "Building an orthonormal basis, revisited" (2017).
+// source: Keller and Heidrich, "Interleaved sampling" (2001), as in thesis 3.4; Roberts, the R2 sequence (2018).
 // note: A pixel has a stratified set of its own: a Hammersley set, shifted by a point of the R2 sequence. All pixels of the square together
 // note: have the hemisphere evenly, so a mean over it has little noise. Frames shift all sets on; frame 0 is the static pattern.
 
@@ -48,16 +48,4 @@ fn hemisphere_direction(place: vec2<f32>) -> vec3<f32> {
     let turn = 6.2831855 * place.y;
     let across = sqrt(max(1.0 - place.x * place.x, 0.0));
     return vec3<f32>(across * cos(turn), across * sin(turn), place.x);
-}
-
-/// Columns: two unit vectors across a unit vector, and itself.
-fn basis_about(normal: vec3<f32>) -> mat3x3<f32> {
-    let side = select(-1.0, 1.0, normal.z >= 0.0);
-    let a = -1.0 / (side + normal.z);
-    let b = normal.x * normal.y * a;
-    return mat3x3<f32>(
-        vec3<f32>(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x),
-        vec3<f32>(b, side + normal.y * normal.y * a, -normal.y),
-        normal
-    );
 }

@@ -11,6 +11,7 @@
 
 #import airlight::core::camera::Camera
 #import airlight::core::finite::{finite_or, is_finite}
+#import airlight::core::tangent_frame::tangent_frame
 #import airlight::painterly::iso_surface::direction_in_picture
 #import airlight::painterly::spline::SplineJet
 
@@ -35,19 +36,6 @@ struct PrincipalCurvatures {
     along_one: vec3<f32>,
     /// Unit direction of the lesser.
     along_two: vec3<f32>,
-}
-
-/// Three unit vectors at right angles, the last of which is `normal`, unit: Duff et al., "Building an orthonormal basis,
-/// revisited" (2017).
-fn tangent_frame(normal: vec3<f32>) -> mat3x3<f32> {
-    let side = select(-1.0, 1.0, normal.z >= 0.0);
-    let a = -1.0 / (side + normal.z);
-    let b = normal.x * normal.y * a;
-    return mat3x3<f32>(
-        vec3<f32>(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x),
-        vec3<f32>(b, side + normal.y * normal.y * a, -normal.y),
-        normal,
-    );
 }
 
 /// Half the angle of a unit vector, as a unit vector.

@@ -103,6 +103,8 @@ modules! {
     core::transfer_function [],
     core::volume [],
     core::bricks [],
+    core::tangent_frame [],
+    core::arc_cosine [],
     transmittance::light_space ["core::light"],
     transmittance::map_texels ["core::finite"],
     transmittance::extinction_map ["core::cosine_basis", "transmittance::map_texels"],
@@ -111,7 +113,7 @@ modules! {
     transmittance::function_map [
         "core::cosine_basis", "core::prefix_sum", "transmittance::map_texels", "transmittance::opacity_map"
     ],
-    transmittance::transmittance_moments ["core::fourier_basis", "core::moment_bounds"],
+    transmittance::transmittance_moments ["core::arc_cosine", "core::fourier_basis", "core::moment_bounds"],
     transmittance::particles ["core::finite", "core::light", "transmittance::light_space"],
     transmittance::medium ["core::finite", "core::phase", "core::prefix_sum", "core::volume"],
     transmittance::seen_particles ["core::camera", "transmittance::particles"],
@@ -130,7 +132,9 @@ modules! {
     ambient::seen_surface ["core::camera", "core::finite"],
     painterly::iso_surface ["core::camera", "core::finite"],
     painterly::spline ["painterly::iso_surface"],
-    painterly::curvature ["core::camera", "core::finite", "painterly::iso_surface", "painterly::spline"],
+    painterly::curvature [
+        "core::camera", "core::finite", "core::tangent_frame", "painterly::iso_surface", "painterly::spline"
+    ],
     painterly::advection ["core::finite", "core::noise", "painterly::curvature"],
     painterly::stroke [],
     painterly::stroke_placement ["core::noise", "painterly::stroke"],
@@ -206,7 +210,7 @@ modules! {
     stylize::perlin_holes ["core::noise"],
     stylize::tf_diffuse [],
     stylize::tf_layers [],
-    stylize::tf_lookup ["core::camera", "core::finite", "core::light", "core::phase"],
+    stylize::tf_lookup ["core::arc_cosine", "core::camera", "core::finite", "core::light", "core::phase"],
     ambient::octahedral ["core::finite"],
     ambient::environment [],
     ambient::cone_light ["ambient::octahedral", "core::finite"],

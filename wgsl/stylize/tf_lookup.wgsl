@@ -7,6 +7,7 @@
 // note: The last property, the mean place of what is lit, costs a march where visibility was pre-filtered: callers that have
 // note: no use for it leave it at zero.
 
+#import airlight::core::arc_cosine::arc_cosine
 #import airlight::core::camera::Camera
 #import airlight::core::finite::{finite_or, finite_or_rgb}
 #import airlight::core::light::{Light, DIRECTIONAL}
@@ -86,7 +87,7 @@ fn ray_property(property: u32, ray: RayProperties, depth_limit: f32) -> f32 {
     let turns = ray.picture_angle * 0.15915494309189535;
     var value = ray.visibility;
     value = select(value, ray.distance / limit, property == LINEAR_DEPTH);
-    value = select(value, acos(clamp(ray.cosine, -1.0, 1.0)) * 0.3183098861837907, property == LIGHT_ANGLE);
+    value = select(value, arc_cosine(ray.cosine) * 0.3183098861837907, property == LIGHT_ANGLE);
     value = select(value, turns - floor(turns), property == PICTURE_ANGLE);
     value = select(value, ray.visible_distance / limit, property == VISIBLE_DEPTH);
     return clamp(finite_or(value, 0.0), 0.0, 1.0);

@@ -15,6 +15,7 @@
 // note: where the gap ends the range begins again. The paper moves a zone's weight too; its bounds are not sharp either.
 // note: Two thin sheets are exact by either kind. An even medium is not: both are for media of few dense parts.
 
+#import airlight::core::arc_cosine::arc_cosine
 #import airlight::core::fourier_basis::PI
 #import airlight::core::moment_bounds::{Moments, moments_at, share_bounds}
 
@@ -147,7 +148,7 @@ fn trigonometric_transmittance(first: vec4<f32>, second: vec4<f32>, depth: f32) 
     let turn = atan2(product.y, product.x);
     let across = complex_product(middle, conjugate(start));
     let real = dot(across, vec2<f32>(cos(0.5 * turn), sin(0.5 * turn)));
-    let arc = acos(clamp(-0.5 * real / max(dot(start, start), 1e-30), -1.0, 1.0));
+    let arc = arc_cosine(-0.5 * real / max(dot(start, start), 1e-30));
     var before = OVERESTIMATION * own;
     var left = 1.0 - own;
     for (var root = 0u; root < 2u; root++) {

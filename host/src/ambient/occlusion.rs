@@ -4,7 +4,7 @@
 use super::{AmbientError, BentBlur, OcclusionSettings};
 use crate::core::Camera;
 use crate::gpu::Gpu;
-use crate::pass::Pass;
+use crate::pass::{Pass, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
@@ -58,6 +58,29 @@ pub struct SurfaceImages<'a> {
     pub normals: &'a Texture,
 }
 
+impl SurfaceImages<'_> {
+    /// Records a pass over a picture of `size`, with what is seen and what else it wants.
+    pub(super) fn dispatch(
+        self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: &Pass,
+        size: [u32; 2],
+        more: &[(&str, Resource<'_>)],
+    ) -> Result<(), AmbientError> {
+        let camera = Buffer::uniform(gpu, self.camera);
+        let mut resources: Vec<(&str, Resource<'_>)> = vec![
+            ("camera", (&camera).into()),
+            ("depth", self.depth.into()),
+            ("normals", self.normals.into()),
+        ];
+        resources.extend_from_slice(more);
+        let bound = pass.bind(gpu, &resources)?;
+        pass.dispatch(encoder, &bound, [size[0], size[1], 1]);
+        Ok(())
+    }
+}
+
 /// Finds bent normals.
 pub struct BentPasses {
     form: BentForm,
@@ -73,11 +96,9 @@ impl BentPasses {
     /// # Errors
     /// [`AmbientError::Pass`].
     pub fn new(gpu: &Gpu, shaders: &Shaders, form: BentForm) -> Result<Self, AmbientError> {
-        let flags = |names: &[(&str, bool)]| {
-            let set = names.iter().filter(|(_, on)| *on);
-            set.fold(Definitions::new(), |definitions, (name, _)| definitions.flag(*name))
+        let pass = |name: &str, flags: &[(&str, bool)]| {
+            Pass::compute_with(gpu, shaders, name, &Definitions::new().flags(flags))
         };
-        let pass = |name: &str, names: &[(&str, bool)]| Pass::compute_with(gpu, shaders, name, &flags(names));
         let only = ("OCCLUSION_ONLY", form.occlusion_only);
         Ok(Self {
             form,
@@ -116,16 +137,8 @@ impl BentPasses {
         let size = [width.div_ceil(2), height.div_ceil(2)];
         let depth = Texture::storage(gpu, size, R32Float);
         let normals = Texture::storage(gpu, size, Rgba16Float);
-        let whole_camera = Buffer::uniform(gpu, seen.camera);
-        let resources = [
-            ("camera", (&whole_camera).into()),
-            ("depth", seen.depth.into()),
-            ("normals", seen.normals.into()),
-            ("halved_depth", (&depth).into()),
-            ("halved_normals", (&normals).into()),
-        ];
-        let bound = self.halve.bind(gpu, &resources)?;
-        self.halve.dispatch(encoder, &bound, [size[0], size[1], 1]);
+        let resources = [("halved_depth", (&depth).into()), ("halved_normals", (&normals).into())];
+        seen.dispatch(gpu, encoder, &self.halve, size, &resources)?;
         // Half of what is seen, also where a last column or row has no second one.
         let camera = Camera { viewport: 0.5 * seen.camera.viewport, ..*seen.camera };
         let halved = SurfaceImages { camera: &camera, depth: &depth, normals: &normals };
@@ -134,18 +147,14 @@ impl BentPasses {
         let halved_camera = Buffer::uniform(gpu, &camera);
         let blur = Buffer::uniform(gpu, &BentBlur::over(settings, 0));
         let resources = [
-            ("camera", (&whole_camera).into()),
             ("halved_camera", (&halved_camera).into()),
             ("blur", (&blur).into()),
-            ("depth", seen.depth.into()),
-            ("normals", seen.normals.into()),
             ("halved_depth", (&depth).into()),
             ("halved_normals", (&normals).into()),
             ("bent", (&bent).into()),
             ("whole", (&whole).into()),
         ];
-        let bound = self.upsample.bind(gpu, &resources)?;
-        self.upsample.dispatch(encoder, &bound, [width, height, 1]);
+        seen.dispatch(gpu, encoder, &self.upsample, [width, height], &resources)?;
         Ok(whole)
     }
 
@@ -158,36 +167,19 @@ impl BentPasses {
         settings: &OcclusionSettings,
     ) -> Result<Texture, AmbientError> {
         let [width, height, _] = seen.depth.size();
+        let size = [width, height];
         let format = if self.form.occlusion_only { R32Float } else { Rgba16Float };
-        let image = || Texture::storage(gpu, [width, height], format);
-        let camera = Buffer::uniform(gpu, seen.camera);
         let uniform = Buffer::uniform(gpu, settings);
-        let mut bent = image();
-        let resources = [
-            ("camera", (&camera).into()),
-            ("settings", (&uniform).into()),
-            ("depth", seen.depth.into()),
-            ("normals", seen.normals.into()),
-            ("bent", (&bent).into()),
-        ];
-        let bound = self.occlude.bind(gpu, &resources)?;
-        self.occlude.dispatch(encoder, &bound, [width, height, 1]);
-        if self.form.blurring == Blurring::Off {
-            return Ok(bent);
-        }
-        for axis in 0..2 {
+        let mut bent = Texture::storage(gpu, size, format);
+        let resources = [("settings", (&uniform).into()), ("bent", (&bent).into())];
+        seen.dispatch(gpu, encoder, &self.occlude, size, &resources)?;
+        let axes = if self.form.blurring == Blurring::Off { 0..0 } else { 0..2 };
+        for axis in axes {
             let blur = Buffer::uniform(gpu, &BentBlur::over(settings, axis));
-            let blurred = image();
-            let resources = [
-                ("camera", (&camera).into()),
-                ("blur", (&blur).into()),
-                ("depth", seen.depth.into()),
-                ("normals", seen.normals.into()),
-                ("bent", (&bent).into()),
-                ("blurred", (&blurred).into()),
-            ];
-            let bound = self.blur.bind(gpu, &resources)?;
-            self.blur.dispatch(encoder, &bound, [width, height, 1]);
+            let blurred = Texture::storage(gpu, size, format);
+            let resources =
+                [("blur", (&blur).into()), ("bent", (&bent).into()), ("blurred", (&blurred).into())];
+            seen.dispatch(gpu, encoder, &self.blur, size, &resources)?;
             bent = blurred;
         }
         Ok(bent)

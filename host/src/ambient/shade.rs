@@ -4,7 +4,7 @@
 use super::{AmbientError, SurfaceImages};
 use crate::gpu::Gpu;
 use crate::pass::Pass;
-use crate::resource::{Buffer, Sampler, Texture};
+use crate::resource::{Sampler, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
 use wgpu::TextureFormat::Rgba16Float;
@@ -34,13 +34,13 @@ impl ShadePass {
     /// # Errors
     /// [`AmbientError::Pass`].
     pub fn new(gpu: &Gpu, shaders: &Shaders, method: Method, printed: bool) -> Result<Self, AmbientError> {
-        let definitions = match method {
-            Method::Occlusion => Definitions::new().flag("OCCLUSION"),
-            Method::Normals => Definitions::new().flag("NORMALS"),
-            Method::Cones => Definitions::new(),
-            Method::ExactCones => Definitions::new().flag("EXACT"),
-        };
-        let definitions = if printed { definitions.flag("PRINTED") } else { definitions };
+        let definitions = Definitions::new().flags(&[
+            ("OCCLUSION", method == Method::Occlusion),
+            ("NORMALS", method == Method::Normals),
+            ("EXACT", method == Method::ExactCones),
+            // Occlusion alone is as printed.
+            ("PRINTED", printed && method != Method::Occlusion),
+        ]);
         let shade = Pass::compute_with(gpu, shaders, "ambient/shade_bent", &definitions)?;
         Ok(Self { shade, sampler: Sampler::linear(gpu) })
     }
@@ -61,19 +61,14 @@ impl ShadePass {
     ) -> Result<Texture, AmbientError> {
         let [width, height, _] = seen.depth.size();
         let picture = Texture::storage(gpu, [width, height], Rgba16Float);
-        let camera = Buffer::uniform(gpu, seen.camera);
         let resources = [
-            ("camera", (&camera).into()),
-            ("depth", seen.depth.into()),
-            ("normals", seen.normals.into()),
             ("albedos", albedos.into()),
             ("bent", bent.into()),
             ("lights", lights.into()),
             ("light_sampler", (&self.sampler).into()),
             ("picture", (&picture).into()),
         ];
-        let bound = self.shade.bind(gpu, &resources)?;
-        self.shade.dispatch(encoder, &bound, [width, height, 1]);
+        seen.dispatch(gpu, encoder, &self.shade, [width, height], &resources)?;
         Ok(picture)
     }
 }

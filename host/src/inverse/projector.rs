@@ -60,8 +60,7 @@ pub(super) const TILE: [u32; 2] = [16, 8];
 pub(super) const BRICK: [u32; 3] = [8, 4, 4];
 
 fn compute(gpu: &Gpu, shaders: &Shaders, name: &str, flags: &[(&str, bool)]) -> Result<Pass, InverseError> {
-    let flags = flags.iter().filter(|(_, set)| *set);
-    let definitions = flags.fold(Definitions::new(), |all, (flag, _)| all.flag(*flag));
+    let definitions = Definitions::new().flags(flags);
     Ok(Pass::compute_with(gpu, shaders, name, &definitions)?)
 }
 

@@ -101,9 +101,8 @@ impl DirectLight {
         [width, height]: [u32; 2],
     ) -> Result<Self, SplattingError> {
         let has = |wanted: &str| resources.iter().any(|(name, _)| *name == wanted);
-        let flags = [("POLYGONS", "light_heights"), ("LIGHT_TEXTURE", "light_texture")];
-        let flags = flags.into_iter().filter(|(_, resource)| has(resource));
-        let definitions = flags.fold(Definitions::new(), |all, (name, _)| all.flag(name));
+        let flags = [("POLYGONS", has("light_heights")), ("LIGHT_TEXTURE", has("light_texture"))];
+        let definitions = Definitions::new().flags(&flags);
         let pass = Pass::compute_with(gpu, shaders, "splatting/light_sheet", &definitions)?;
         let shadow = Texture::storage(gpu, [width, height], LIGHT);
         let left = Buffer::storage(gpu, 16 * u64::from(width) * u64::from(height));

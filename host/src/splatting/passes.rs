@@ -36,12 +36,7 @@ impl Passes {
         settings: &SheetSettings,
         polygons: bool,
     ) -> Result<Self, SplattingError> {
-        let flags = |names: &[(&'static str, bool)]| {
-            let add = |all: Definitions, (name, set): &(&'static str, bool)| {
-                if *set { all.flag(*name) } else { all }
-            };
-            names.iter().fold(Definitions::new(), add)
-        };
+        let flags = |names: &[(&str, bool)]| Definitions::new().flags(names);
         let composed = |pass: &str, definitions: &Definitions| {
             shaders.compose_with(pass, definitions).map_err(PassError::from)
         };

@@ -111,3 +111,14 @@ pub fn refuses(folder: &Path, arguments: &[&str], code: i32, parts: &[&str]) {
     }
     assert!(files(folder) == before, "files were made or changed: {told}");
 }
+
+/// As [`refuses`], and before any work of a GPU: where there is no adapter the same is said.
+#[track_caller]
+pub fn refuses_first(folder: &Path, arguments: &[&str], code: i32, parts: &[&str]) {
+    refuses(folder, arguments, code, parts);
+    let nowhere = folder.join("no-driver.json").display().to_string();
+    let none = [("VK_DRIVER_FILES", nowhere.as_str()), ("VK_ICD_FILENAMES", nowhere.as_str())];
+    let ended = airlight_with(folder, arguments, &none);
+    let told = format!("airlight {}\nended with {} and said: {}", arguments.join(" "), ended.code, ended.err);
+    assert!(ended.code == code && !ended.err.contains("no GPU adapter"), "{told}");
+}

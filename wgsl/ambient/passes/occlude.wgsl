@@ -19,9 +19,10 @@
 // binding bent: out, rgba16float: mean direction in the world, whose length is about 1/2 where all is open, and in alpha openness 0..1; with OCCLUSION_ONLY r32float, openness.
 
 #import airlight::core::camera::{Camera, towards_viewer}
+#import airlight::core::tangent_frame::tangent_frame
 #import airlight::ambient::bent_cone::{BentSum, bent_nothing, openness}
 #import airlight::ambient::occluders::{OcclusionSettings, occluder_weight, elevation_sine}
-#import airlight::ambient::sample_pattern::{SampleShift, sample_shift, basis_about}
+#import airlight::ambient::sample_pattern::{SampleShift, sample_shift}
 #import airlight::ambient::seen_surface::{SeenSurface, seen_surface, seen_place, seen_normal}
 #ifndef OCCLUSION_ONLY
 #import airlight::ambient::bent_cone::mean_direction
@@ -59,7 +60,7 @@ fn seen_at(pixel: vec2<i32>) -> SeenSurface {
 /// Adds a direction: what is seen beside the surface blocks it as soon as it rises over the tangent plane.
 fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, viewer: vec3<f32>, shift: SampleShift) -> BentSum {
     let local = hemisphere_direction(sample_place(index, settings.samples, shift));
-    let basis = basis_about(normal);
+    let basis = tangent_frame(normal);
     let at = seen_place(camera, place + basis * vec3<f32>(local.xy * settings.radius, 0.0));
     let seen = seen_at(vec2<i32>(floor(at.pixel)));
     let towards = seen.place - place;
@@ -72,7 +73,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
 /// Adds the slice of a direction across the normal, open above its horizon.
 fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, viewer: vec3<f32>, shift: SampleShift) -> BentSum {
     let turn = 6.2831855 * (f32(index) + shift.directions.x) / f32(max(settings.samples, 1u));
-    let tangent = basis_about(normal) * vec3<f32>(cos(turn), sin(turn), 0.0);
+    let tangent = tangent_frame(normal) * vec3<f32>(cos(turn), sin(turn), 0.0);
     var horizon = 0.0;
     for (var step = 0u; step < settings.steps; step++) {
         let part = (f32(step) + shift.steps) / f32(settings.steps);
@@ -91,7 +92,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
 /// Adds a slice through the view direction. Angles are from the direction towards the viewer.
 fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, viewer: vec3<f32>, shift: SampleShift) -> BentSum {
     let turn = 3.1415927 * (f32(index) + shift.directions.x) / f32(max(settings.samples, 1u));
-    let aside = basis_about(viewer) * vec3<f32>(cos(turn), sin(turn), 0.0);
+    let aside = tangent_frame(viewer) * vec3<f32>(cos(turn), sin(turn), 0.0);
     let upright = vec2<f32>(dot(normal, viewer), dot(normal, aside));
     // A normal at right angles to the slice leaves its middle open to choice.
     let middle = select(atan2(upright.y, upright.x), 0.0, dot(upright, upright) < 1e-12);
@@ -127,7 +128,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
 #else
 /// Adds a direction, marched in a few steps.
 fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, viewer: vec3<f32>, shift: SampleShift) -> BentSum {
-    let direction = basis_about(normal) * hemisphere_direction(sample_place(index, settings.samples, shift));
+    let direction = tangent_frame(normal) * hemisphere_direction(sample_place(index, settings.samples, shift));
     var visibility = 1.0;
     var outlier = false;
     for (var step = 0u; step < settings.steps; step++) {

@@ -14,7 +14,7 @@ use super::report::{Distance, StageReport, ViewReport};
 use super::studio::{Look, Picture, Seen, Shot, Studio};
 use crate::command::CommandError;
 use crate::inverse::{
-    Channels, InverseError, LogCounts, LogTargets, Medium, Solved, Solver, Target, log_targets,
+    Channels, InverseError, LogCounts, LogTargets, Medium, Projector, Solved, Solver, Target, log_targets,
     radiance_targets,
 };
 use glam::Vec3;
@@ -141,19 +141,7 @@ impl Stages<'_> {
             _ => Solved::Both,
         };
         let projector = studio.projector(kind, channels)?;
-        let mut targets = Vec::with_capacity(seen.len());
-        for (seen, picture) in seen.iter().zip(self.pictures(&known)?) {
-            let shot = seen.shot();
-            let [target, background, through, radiance] =
-                [&seen.target, &seen.background, &picture.through, &picture.radiance]
-                    .map(|colours| numbers(colours, channels));
-            targets.push(Target {
-                view: projector.view(studio.gpu, shot.slices, shot.depths)?,
-                medium: studio.medium(&known, seen.light)?,
-                wanted: radiance_targets(&target, &background, &through, &radiance)?,
-                weights: seen.weights.clone(),
-            });
-        }
+        let targets = self.targets(&projector, &known, |seen| studio.medium(&known, seen.light))?;
         let unknowns: Vec<_> = properties
             .iter()
             .zip(solved.into_iter().zip(&starts))
@@ -174,6 +162,29 @@ impl Stages<'_> {
         let counts = vec![None; seen.len()];
         let (look, residuals) = self.choose(wanted, &descent, look, with, |look| self.squares(look))?;
         Ok(Left { look, residuals: only(residuals, channels), volumes, counts })
+    }
+
+    /// What is wanted of all views beyond the pictures of what is known. `medium`: of a view.
+    fn targets(
+        &self,
+        projector: &Projector,
+        known: &Look,
+        medium: impl Fn(&Seen) -> Result<Arc<Medium>, InverseError>,
+    ) -> Result<Vec<Target>, CommandError> {
+        let Self { studio, seen, .. } = *self;
+        let target = |(seen, picture): (&Seen, Picture)| {
+            let shot = seen.shot();
+            let [target, background, through, radiance] =
+                [&seen.target, &seen.background, &picture.through, &picture.radiance]
+                    .map(|colours| numbers(colours, studio.channels));
+            Ok(Target {
+                view: projector.view(studio.gpu, shot.slices, shot.depths)?,
+                medium: medium(seen)?,
+                wanted: radiance_targets(&target, &background, &through, &radiance)?,
+                weights: seen.weights.clone(),
+            })
+        };
+        seen.iter().zip(self.pictures(known)?).map(target).collect()
     }
 
     /// What is wrong in all pictures: weighed sums of squares by channel.

@@ -56,14 +56,8 @@ impl StylizedEvaluation {
         if function.needs_visible_depth() {
             return Err(TransferError::VisibleDepth);
         }
-        let mut definitions = method.evaluation_definitions();
-        for (name, needed) in
-            [("ANGLES", function.needs_angles()), ("ANISOTROPIC", function.is_anisotropic())]
-        {
-            if needed {
-                definitions = definitions.flag(name);
-            }
-        }
+        let needed = [("ANGLES", function.needs_angles()), ("ANISOTROPIC", function.is_anisotropic())];
+        let definitions = method.evaluation_definitions().flags(&needed);
         let pass = picture_pass(gpu, shaders, "stylize/evaluate", &definitions, "fragment_evaluate")?;
         let [width, height, _] = method.scattered().size();
         let restyled = Texture::target(gpu, [width, height], Rgba16Float);

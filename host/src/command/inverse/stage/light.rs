@@ -9,7 +9,7 @@ use crate::command::inverse::field::{colours, numbers, reduced};
 use crate::command::inverse::light::Illumination;
 use crate::command::inverse::options::{StrategySpelling, Wanted};
 use crate::command::inverse::studio::Look;
-use crate::inverse::{LightSolver, LightUnknown, Medium, Solved, Target, radiance_targets};
+use crate::inverse::{LightSolver, LightUnknown, Medium, Solved};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -32,19 +32,7 @@ impl Stages<'_> {
         // Light stands where the albedo stands in a solve for it, and the albedo where light does.
         let medium = Arc::new(Medium { extinction, scattered, index: studio.index.clone() });
         let projector = studio.projector(Solved::Albedo, channels)?;
-        let mut targets = Vec::with_capacity(seen.len());
-        for (seen, picture) in seen.iter().zip(self.pictures(&known)?) {
-            let shot = seen.shot();
-            let [target, background, through, radiance] =
-                [&seen.target, &seen.background, &picture.through, &picture.radiance]
-                    .map(|colours| numbers(colours, channels));
-            targets.push(Target {
-                view: projector.view(gpu, shot.slices, shot.depths)?,
-                medium: Arc::clone(&medium),
-                wanted: radiance_targets(&target, &background, &through, &radiance)?,
-                weights: seen.weights.clone(),
-            });
-        }
+        let targets = self.targets(&projector, &known, |_| Ok(Arc::clone(&medium)))?;
         let unknown = LightUnknown {
             volumes,
             start: numbers(&begun.radiance, channels),

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+#define_import_path airlight::core::tangent_frame
+// summary: Directions at right angles to a normal.
+// source: Duff et al., "Building an orthonormal basis, revisited" (2017).
+
+/// Columns: three unit vectors at right angles, the last of which is `normal`, unit.
+fn tangent_frame(normal: vec3<f32>) -> mat3x3<f32> {
+    let side = select(-1.0, 1.0, normal.z >= 0.0);
+    let a = -1.0 / (side + normal.z);
+    let b = normal.x * normal.y * a;
+    return mat3x3<f32>(
+        vec3<f32>(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x),
+        vec3<f32>(b, side + normal.y * normal.y * a, -normal.y),
+        normal,
+    );
+}
