@@ -102,7 +102,7 @@ fn bent_normals_and_cones_are_nearer_to_the_truth_than_occlusion() {
             let map: ReferenceEnvironment = reference_map(&real_map(file)).resized(16);
             let texels = map.texels().iter().map(|t| Vec3::from(t.map(|v| v as f32))).collect();
             let host_map = Environment::new([32, 16], texels).unwrap();
-            let form = ConeLightForm { side: 32, sampled: false };
+            let form = ConeLightForm { side: 33, sampled: false };
             let light = ConeLight::new(gpu(), shaders(), &host_map, form).unwrap();
             let settings = Settings {
                 directions: 128,

@@ -8,7 +8,7 @@
 // note: of L, whatever the angle. What is not hidden has to be multiplied in: by Eq. 3.8 and 3.10 occlusion and `geometric_term`.
 // note: In constant light the exact factor is the cosine-weighted open share K = 2 A <N, n>, of the uniform open share A and the mean
 // note: direction N at its own length (Eq. 3.5): it holds the geometric term already.
-// note: The maps are an array of octahedral maps with borders (`ambient/octahedral`), rgba16float, layer k of 8 for the angle
+// note: The maps are an array of octahedral maps (`ambient/octahedral`), rgba16float, layer k of 8 for the angle
 // note: 90 degrees (k + 1) / 8, made by the pass `ambient/convolve_cones`; the sampler is linear.
 
 #import airlight::ambient::octahedral::octahedral_coordinates
@@ -31,7 +31,7 @@ fn cone_radiance(cones: texture_2d_array<f32>, cone_sampler: sampler, direction:
     let last = f32(CONE_LAYERS - 1u);
     let layer = select(last, clamp(angle / CONE_ANGLE_STEP - 1.0, 0.0, last), is_finite(angle));
     let begin = min(u32(layer), CONE_LAYERS - 2u);
-    let coordinates = octahedral_coordinates(direction, textureDimensions(cones).x - 2u);
+    let coordinates = octahedral_coordinates(direction, textureDimensions(cones).x);
     let narrow = textureSampleLevel(cones, cone_sampler, coordinates, begin, 0.0).rgb;
     let wide = textureSampleLevel(cones, cone_sampler, coordinates, begin + 1u, 0.0).rgb;
     return mix(narrow, wide, layer - f32(begin));
@@ -40,7 +40,7 @@ fn cone_radiance(cones: texture_2d_array<f32>, cone_sampler: sampler, direction:
 /// L_p of Eq. 3.7: irradiance over pi of a surface that faces `direction` (any length), nothing hidden; linear RGB.
 /// That of the normal is what ambient occlusion multiplies, that of the bent normal what bent normals do (Eq. 3.8).
 fn preconvolved_radiance(cones: texture_2d_array<f32>, cone_sampler: sampler, direction: vec3<f32>) -> vec3<f32> {
-    let coordinates = octahedral_coordinates(direction, textureDimensions(cones).x - 2u);
+    let coordinates = octahedral_coordinates(direction, textureDimensions(cones).x);
     return textureSampleLevel(cones, cone_sampler, coordinates, CONE_LAYERS - 1u, 0.0).rgb;
 }
 

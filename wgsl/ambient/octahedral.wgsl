@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::ambient::octahedral
-// summary: Directions as texels of a square: an octahedron unfolded about the y axis, with a border for seamless filtering.
+// summary: Directions as texels of a square: an octahedron unfolded about the y axis, whose edges are middles of texels.
 // source: Engelhardt and Dachsbacher, "Octahedron environment maps" (2008).
 // note: +y lies in the middle of the square, -y in its four corners, and the horizon joins the middles of its edges; x runs along
-// note: columns, z along rows. A map of `side` texels a side has one texel more all around, which repeats the texel that lies across
-// note: the edge: each edge is folded at its middle. So a bilinear sampler finds no seam, and clamping never matters.
+// note: columns, z along rows. Middles of the outer texels lie on the edges of the square, each of which is folded at its middle: texels
+// note: there have a twin with the same direction, so a bilinear sampler finds no seam and needs no border. With an odd number of
+// note: texels a side the creases of the octahedron run through middles of texels too, and filtering does not cut across them.
 // note: A direction that is not finite, or shorter than 1e-30, counts as +y.
 
 #import airlight::core::finite::is_finite
@@ -38,27 +39,13 @@ fn octahedral_direction(place: vec2<f32>) -> vec3<f32> {
     return normalize(vec3<f32>(flat_part.x, height, flat_part.y));
 }
 
-/// Coordinates 0..1 in a map of `side` texels with its border, for a linear sampler.
+/// Coordinates 0..1 in a map of `side` texels, at least 2, for a linear sampler.
 fn octahedral_coordinates(direction: vec3<f32>, side: u32) -> vec2<f32> {
     let place = 0.5 * octahedral_place(direction) + 0.5;
-    return (place * f32(side) + 1.0) / f32(side + 2u);
+    return (place * f32(side - 1u) + 0.5) / f32(side);
 }
 
-/// The texel 0..side-1 without border that `texel` 0..side+1 of the map is, or repeats.
-fn octahedral_inner(texel: vec2<u32>, side: u32) -> vec2<u32> {
-    var inner = vec2<i32>(texel) - 1;
-    let last = i32(side) - 1;
-    if inner.x < 0 || inner.x > last {
-        inner = vec2<i32>(clamp(inner.x, 0, last), last - inner.y);
-    }
-    if inner.y < 0 || inner.y > last {
-        inner = vec2<i32>(last - inner.x, clamp(inner.y, 0, last));
-    }
-    return vec2<u32>(inner);
-}
-
-/// The unit vector of the middle of texel 0..side+1 of the map, that of the repeated texel in the border.
+/// The unit vector of the middle of texel 0..side-1 of the map.
 fn octahedral_texel_direction(texel: vec2<u32>, side: u32) -> vec3<f32> {
-    let inner = vec2<f32>(octahedral_inner(texel, side));
-    return octahedral_direction((2.0 * inner + 1.0) / f32(side) - 1.0);
+    return octahedral_direction(2.0 * vec2<f32>(texel) / f32(side - 1u) - 1.0);
 }

@@ -59,7 +59,7 @@ pub enum ConeLightError {
 /// How light is preconvolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConeLightForm {
-    /// Texels a side of the octahedral maps, without their border: 8 to 512.
+    /// Texels a side of the octahedral maps: 8 to 512. Odd ones filter better (`ambient/octahedral`).
     pub side: u32,
     /// Rings of each cone are sampled, for light that moves; otherwise all texels are summed.
     pub sampled: bool,
@@ -67,7 +67,7 @@ pub struct ConeLightForm {
 
 impl Default for ConeLightForm {
     fn default() -> Self {
-        Self { side: 64, sampled: false }
+        Self { side: 65, sampled: false }
     }
 }
 
@@ -81,7 +81,7 @@ pub struct ConeLight {
     around: Sampler,
     /// The environment as it is convolved, with its levels where it is sampled.
     radiance: Texture,
-    /// L_c: [`CONE_LAYERS`] layers of `side + 2` texels squared, rgba16float, as `ambient/cone_light` reads them.
+    /// L_c: [`CONE_LAYERS`] layers of `side` texels squared, rgba16float, as `ambient/cone_light` reads them.
     pub cones: Texture,
     /// The sampler for `cones`: linear.
     pub sampler: Sampler,
@@ -124,7 +124,7 @@ impl ConeLight {
         } else {
             (Rgba32Float, EXACT_WIDTH, 1)
         };
-        let side = form.side + 2;
+        let side = form.side;
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
         Ok(Self {
             form,

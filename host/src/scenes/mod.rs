@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The scenes of the gallery and the benchmarks: real meshes among generated trees and terrain.
 
+mod ambient;
 mod lights;
 mod parts;
 mod stylized;
 mod windows;
+
+pub use ambient::{AmbientScene, ambient_scenes};
 
 use crate::core::{Cascades, DepthRange, PerspectiveView, Sky, View, direction_from_angles};
 use crate::data::{

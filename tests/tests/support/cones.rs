@@ -32,10 +32,10 @@ pub fn reference_map(map: &Environment) -> ReferenceEnvironment {
     ReferenceEnvironment::new(map.size()[1] as usize, texels)
 }
 
-/// The direction of inner texel (x, y) of an octahedral map: the square |x| + |z| <= 1 in its middle is the upper half,
-/// the corners outside of it are folded down.
+/// The direction of texel (x, y) of an octahedral map, the outermost of which are on the edge of the square: the square
+/// |x| + |z| <= 1 in its middle is the upper half, the corners outside of it are folded down.
 pub fn texel_direction(x: usize, y: usize, side: usize) -> Point {
-    let [x, z] = [x, y].map(|i| (2 * i + 1) as f64 / side as f64 - 1.0);
+    let [x, z] = [x, y].map(|i| (2 * i) as f64 / (side - 1) as f64 - 1.0);
     let up = 1.0 - x.abs() - z.abs();
     // Folding down moves a place towards the middle by as much as it lies below, along both axes.
     let down = (-up).max(0.0);
@@ -81,7 +81,7 @@ pub fn lit(map: &Environment, side: u32, sampled: bool) -> ConeLight {
 
 /// The maps of cones as they are read back.
 pub struct Cones {
-    /// Texels a side without border.
+    /// Texels a side.
     pub side: usize,
     texels: Vec<f32>,
 }
@@ -90,7 +90,7 @@ impl Cones {
     /// What a light has now.
     pub fn of(light: &ConeLight) -> Self {
         let [width, _, _] = light.cones.size();
-        Self { side: width as usize - 2, texels: light.cones.read(gpu()).unwrap() }
+        Self { side: width as usize, texels: light.cones.read(gpu()).unwrap() }
     }
 
     /// All numbers, alpha included.
@@ -98,16 +98,10 @@ impl Cones {
         &self.texels
     }
 
-    /// A texel of the map, 0 in the border.
-    pub fn bordered(&self, layer: usize, x: usize, y: usize) -> Rgb {
-        let width = self.side + 2;
-        let at = 4 * ((layer * width + y) * width + x);
+    /// A texel of the map.
+    pub fn texel(&self, layer: usize, x: usize, y: usize) -> Rgb {
+        let at = 4 * ((layer * self.side + y) * self.side + x);
         [0, 1, 2].map(|c| f64::from(self.texels[at + c]))
-    }
-
-    /// An inner texel.
-    pub fn inner(&self, layer: usize, x: usize, y: usize) -> Rgb {
-        self.bordered(layer, x + 1, y + 1)
     }
 }
 

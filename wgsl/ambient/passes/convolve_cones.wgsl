@@ -5,14 +5,14 @@
 // note: and it is computed as one: the sum of weights stands for pi sin^2(angle), so that constant light is exact at any resolution.
 // note: The exact form sums over all texels of the map; a texel that the edge of a cone crosses counts by the part inside,
 // note: along the gradient of the cosine: the map should have 64 rows or more, and at most
-// note: 512x256 texels for software drivers that end loops. An invocation is a texel of the cones' maps, x alone, `(side + 2)^2` of them.
+// note: 512x256 texels for software drivers that end loops. An invocation is a texel of the cones' maps, x alone, `side^2` of them.
 // note: With SAMPLED the rings between neighbouring angles are sampled instead, RING_DIRECTIONS each, evenly in solid angle times
 // note: cosine, at the level of the chain whose texels are as large as a direction's share; cones add up their rings. For light
 // note: that moves: edges of cones are as soft as those texels, and rows near the poles less filtered than the others.
 // definition SAMPLED: rings are sampled in a chain of levels.
 // binding radiance: linear RGB, finite, latitude-longitude as in ambient/environment: rgba32float, with SAMPLED rgba16float with levels, each half the one before.
 // binding radiance_sampler: linear within and between levels, repeating in u; with SAMPLED only.
-// binding cones: out, rgba16float, 8 layers of side + 2 texels squared, as ambient/cone_light reads them.
+// binding cones: out, rgba16float, 8 layers of side texels squared, as ambient/cone_light reads them.
 
 #import airlight::ambient::octahedral::octahedral_texel_direction
 #ifdef SAMPLED
@@ -49,7 +49,7 @@ fn convolve_cones(@builtin(global_invocation_id) id: vec3<u32>) {
     if texel.y >= width {
         return;
     }
-    let axis = octahedral_texel_direction(texel, width - 2u);
+    let axis = octahedral_texel_direction(texel, width);
     // Level steps of the map that all directions of a ring share.
     let texel_side = HALF_TURN / f32(textureDimensions(radiance).y);
     let other = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(axis.y) > 0.9);
@@ -162,7 +162,7 @@ fn convolve_cones(
 ) {
     let width = textureDimensions(cones).x;
     let texel = vec2<u32>(id.x % width, id.x / width);
-    let axis = octahedral_texel_direction(min(texel, vec2<u32>(width - 1u)), width - 2u);
+    let axis = octahedral_texel_direction(min(texel, vec2<u32>(width - 1u)), width);
     let size = textureDimensions(radiance);
     let sharpness = f32(size.y) / HALF_TURN;
     var sums = Sums();
