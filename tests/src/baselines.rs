@@ -5,7 +5,8 @@
 //! Each is a pass that builds a texture from the rectified map and one that evaluates a picture,
 //! average visibility over the nearest row. Their sources import Airlight's modules. One more copies
 //! a shadow map, texel by texel: the floor under all that morphology does. And one draws quads whose
-//! corners are known: the floor under all that drawing strokes does.
+//! corners are known: the floor under all that drawing strokes does. Two gather an environment's light in
+//! screen space, direction by direction, and blur it: what bent cones compete with.
 
 pub mod minmax;
 pub mod variance;
@@ -30,7 +31,7 @@ macro_rules! picture {
 }
 
 /// Every pass.
-pub const PASSES: [Source; 8] = [
+pub const PASSES: [Source; 10] = [
     Source { name: "minmax_build", text: include_str!("baselines/minmax_build.wgsl") },
     Source { name: "minmax", text: picture!("baselines/minmax.wgsl") },
     Source { name: "minmax_binary_build", text: include_str!("baselines/minmax_binary_build.wgsl") },
@@ -39,4 +40,6 @@ pub const PASSES: [Source; 8] = [
     Source { name: "variance", text: picture!("baselines/variance.wgsl") },
     Source { name: "copy", text: include_str!("baselines/copy.wgsl") },
     Source { name: "plain_quads", text: include_str!("baselines/plain_quads.wgsl") },
+    Source { name: "ssdo", text: include_str!("baselines/ssdo.wgsl") },
+    Source { name: "ssdo_blur", text: include_str!("baselines/ssdo_blur.wgsl") },
 ];

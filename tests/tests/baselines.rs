@@ -1,46 +1,27 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The competitors: that each is what its name says, and how good it is next to prefiltered bases.
 //!
-//! `--nocapture` prints what was measured. `AIRLIGHT_MUTATE` reaches the competitors' own passes too, as
-//! `baselines/passes/NAME.wgsl`.
+//! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/competitors.rs"]
+mod competitors;
 #[path = "support/gpu.rs"]
 mod gpu;
 
 use airlight::command::baselines::{Baseline, Competitor};
 use airlight::scattering::{Along, March, Prefiltered, Rectification, Settings, Weighting};
-use airlight::{Shaders, Stage, scenes};
-use airlight_tests::baselines::{PASSES, SYSTEM, variance};
+use airlight::{Stage, scenes};
+use airlight_tests::baselines::variance;
 use airlight_tests::error;
 use airlight_tests::reference::scattering as reference;
+use competitors::shaders;
 use gpu::{Random, gpu};
-use std::sync::OnceLock;
 
 /// Size of the pictures.
 const PICTURE: [u32; 2] = [480, 270];
 /// Step of a half float next to 1: this adapter rounds towards zero.
 const HALF: f64 = 1.0 / 2048.0;
-
-/// Airlight's shaders and the competitors', mutated where that is asked for.
-fn shaders() -> &'static Shaders {
-    static SHADERS: OnceLock<Shaders> = OnceLock::new();
-    SHADERS.get_or_init(|| {
-        let mutation = std::env::var("AIRLIGHT_MUTATE").unwrap_or_default();
-        let parts: Vec<&str> = mutation.split('|').collect();
-        let library = PASSES.iter().fold(gpu::shaders().library().clone(), |library, pass| {
-            let mut text = pass.text.to_owned();
-            if let [file, old, new] = parts[..]
-                && file == format!("{SYSTEM}/passes/{}.wgsl", pass.name)
-            {
-                assert!(text.contains(old), "{file} has no `{old}`");
-                text = text.replace(old, new);
-            }
-            library.with_pass(SYSTEM, pass.name, &text)
-        });
-        Shaders::from_library(library)
-    })
-}
 
 /// A scene of the gallery with a rectified map.
 struct Case {

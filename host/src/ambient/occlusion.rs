@@ -60,7 +60,7 @@ pub struct SurfaceImages<'a> {
 
 impl SurfaceImages<'_> {
     /// Records a pass over a picture of `size`, with what is seen and what else it wants.
-    pub(super) fn dispatch(
+    pub(crate) fn dispatch(
         self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,

@@ -77,7 +77,7 @@ pub struct BentBlur {
 
 impl BentBlur {
     /// Over the sampling pattern along an axis of the picture, 0 or 1.
-    pub(super) fn over(settings: &OcclusionSettings, axis: usize) -> Self {
+    pub(crate) fn over(settings: &OcclusionSettings, axis: usize) -> Self {
         Self {
             axis: UVec2::AXES[axis],
             taps: settings.side,

@@ -28,7 +28,7 @@ mod transfers;
 mod transmittance;
 mod volumes;
 
-pub use bench::baselines;
+pub use bench::{baselines, ssdo};
 pub use error::CommandError;
 
 use clap::{Parser, Subcommand};

@@ -5,7 +5,7 @@ mod conflicts;
 mod flags;
 mod shown;
 mod studio;
-mod traced;
+pub(super) mod traced;
 
 pub use flags::Options;
 
@@ -54,7 +54,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
         (Some(method), Some((gpu, shaders))) => {
             studio::draw((gpu, shaders), options, (&mesh, &camera, radius), light.as_ref(), method)?
         }
-        _ => traced::trace(&mesh, light.as_ref(), &camera, options.rays(), options.radius),
+        _ => traced::trace(&mesh, light.as_ref(), &camera, options.rays(), options.radius, 1),
     };
     bar.inc(1);
 

@@ -11,21 +11,25 @@ use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
 /// Traces a picture, row by row from the top. `rays` a pixel; `radius`: metres up to which occluders count, less the farther they are;
-/// without it all of them block all light. `light`: none where only numbers are shown.
+/// without it all of them block all light. `light`: none where only numbers are shown. `stride`: 1 for every pixel; else of a square of so many
+/// pixels a side the one in the middle.
 pub fn trace(
     mesh: &Mesh,
     light: Option<&Environment>,
     camera: &Camera,
     rays: u32,
     radius: Option<f32>,
+    stride: u32,
 ) -> Vec<Option<Seen>> {
     let scene = scene_of(mesh);
     let light = light.map(light_of);
     let pattern = Pattern::new(rays);
     let views = Rays::of(camera);
-    let [width, height] = views.size();
+    // Pixels stride/2, stride/2 + stride, ...
+    let [width, height] = views.size().map(|side| side.saturating_sub(stride / 2).div_ceil(stride));
     let pixel = |x: u32, y: u32| {
-        let [origin, direction] = views.at(x, y).map(exact);
+        let at = [x, y].map(|at| at * stride + stride / 2);
+        let [origin, direction] = views.at(at[0], at[1]).map(exact);
         let hit = scene.hit(origin, direction)?;
         let (place, normal) = (scene.position(&hit), scene.normal(&hit, direction));
         // Fractions of the golden section.

@@ -1,47 +1,81 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The named figures of the system `ambient`: what bent normals cost over occlusion alone.
+//! The named figures of the system `ambient`: what bent normals cost over occlusion alone, and what bent cones save over light that is looked up.
 
-use super::{Quality, Row, Work, interleaved, ratio, time};
+use super::{Quality, Row, Work, ambient_directional, interleaved, ratio, time};
 use crate::ambient::{
     AmbientError, BentForm, BentPasses, Blurring, OcclusionSettings, Sampling, SurfaceImages,
 };
 use crate::command::{CommandError, progress};
-use crate::core::{Camera, DepthRange, GeometryPass, MeshBuffers, PerspectiveView};
-use crate::data::{mesh_from_bytes, plane};
+use crate::core::{Camera, DepthRange, Geometry, GeometryPass, MeshBuffers, PerspectiveView};
+use crate::data::{Mesh, mesh_from_bytes, plane};
 use crate::scenes::BUNNY;
 use crate::{Gpu, Shaders, StageError, Texture};
 use glam::{Mat4, Vec2, Vec3};
 
 /// Name of the system in its rows.
-const SYSTEM: &str = "ambient";
+pub const SYSTEM: &str = "ambient";
 /// Samples of each piece of work.
-const SAMPLES: usize = 5;
+pub const SAMPLES: usize = 5;
 /// As in Fig. 3.1 of the thesis.
 const SIZE: [u32; 2] = [2048, 1024];
+/// Metres up to which occluders count.
+pub const RADIUS: f32 = 0.5;
+
+/// The bunny, as high as 1.6 metres, on a floor that fills the lower part of the picture.
+pub struct Scene {
+    /// What is seen.
+    pub mesh: Mesh,
+    /// From where.
+    pub camera: Camera,
+    /// Its depth, normals and albedos.
+    pub geometry: Geometry,
+}
+
+impl Scene {
+    fn new(gpu: &Gpu, shaders: &Shaders) -> Result<Self, CommandError> {
+        let bunny = mesh_from_bytes(BUNNY.0, BUNNY.1).map_err(CommandError::failure)?;
+        let bounds = bunny.bounds().ok_or_else(|| CommandError::failure("the bunny has no triangles"))?;
+        let feet = Vec3::new(bounds.center().x, bounds.min.y, bounds.center().z);
+        let scale = Mat4::from_scale(Vec3::splat(1.6 / bounds.size().y));
+        let mut mesh = bunny.transformed(scale * Mat4::from_translation(-feet));
+        mesh.append(&plane(Vec2::splat(12.0), 1));
+        let view = PerspectiveView {
+            eye: Vec3::new(0.5, 1.8, 3.4),
+            target: Vec3::new(0.0, 0.7, 0.0),
+            field_of_view: 36.0,
+            near: 0.1,
+            far: 30.0,
+            depth: DepthRange::Reversed,
+        };
+        let camera = Camera::new(&view.into(), SIZE).map_err(StageError::Camera)?;
+        let geometry =
+            GeometryPass::new(gpu, shaders)?.draw(gpu, &camera, &[MeshBuffers::new(gpu, &mesh)])?;
+        Ok(Self { mesh, camera, geometry })
+    }
+
+    /// As the passes take it.
+    pub fn images(&self) -> SurfaceImages<'_> {
+        SurfaceImages { camera: &self.camera, depth: &self.geometry.depth, normals: &self.geometry.normals }
+    }
+}
 
 /// Every named figure.
 pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, CommandError> {
-    let bar = progress::bar(1, quiet);
+    let bar = progress::bar(2, quiet);
     bar.set_message("bent normals and occlusion alone");
-    // The bunny, as high as 1.6 metres, on a floor that fills the lower part of the picture.
-    let bunny = mesh_from_bytes(BUNNY.0, BUNNY.1).map_err(CommandError::failure)?;
-    let bounds = bunny.bounds().ok_or_else(|| CommandError::failure("the bunny has no triangles"))?;
-    let feet = Vec3::new(bounds.center().x, bounds.min.y, bounds.center().z);
-    let scale = Mat4::from_scale(Vec3::splat(1.6 / bounds.size().y));
-    let mut mesh = bunny.transformed(scale * Mat4::from_translation(-feet));
-    mesh.append(&plane(Vec2::splat(12.0), 1));
-    let view = PerspectiveView {
-        eye: Vec3::new(0.5, 1.8, 3.4),
-        target: Vec3::new(0.0, 0.7, 0.0),
-        field_of_view: 36.0,
-        near: 0.1,
-        far: 30.0,
-        depth: DepthRange::Reversed,
-    };
-    let camera = Camera::new(&view.into(), SIZE).map_err(StageError::Camera)?;
-    let geometry = GeometryPass::new(gpu, shaders)?.draw(gpu, &camera, &[MeshBuffers::new(gpu, &mesh)])?;
-    let seen = SurfaceImages { camera: &camera, depth: &geometry.depth, normals: &geometry.normals };
-    let settings = OcclusionSettings::new(0.5);
+    let scene = Scene::new(gpu, shaders)?;
+    let mut rows = costs(gpu, shaders, &scene)?;
+    bar.inc(1);
+    bar.set_message("bent cones and light that is looked up");
+    rows.extend(ambient_directional::rows(gpu, shaders, &scene)?);
+    bar.finish_and_clear();
+    Ok(rows)
+}
+
+/// What bent normals cost over occlusion alone.
+fn costs(gpu: &Gpu, shaders: &Shaders, scene: &Scene) -> Result<Vec<Row>, CommandError> {
+    let seen = scene.images();
+    let settings = OcclusionSettings::new(RADIUS);
     let passes = |occlusion_only: bool, blurring: Blurring| {
         let form = BentForm { sampling: Sampling::Hemisphere, blurring, occlusion_only, halved: false };
         BentPasses::new(gpu, shaders, form)
@@ -77,6 +111,5 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, quiet: bool) -> Result<Vec<Row>, Comma
     for (name, list) in ["bent", "ao", "bent_without_blur", "ao_without_blur"].iter().zip(samples) {
         rows.push(time(SYSTEM, *name, list));
     }
-    bar.finish_and_clear();
     Ok(rows)
 }

@@ -2,6 +2,7 @@
 //! `airlight bench`: ratios against baselines, interleaved in one run, with the error of both sides.
 
 mod ambient;
+mod ambient_directional;
 pub mod baselines;
 mod choices;
 mod inverse;
@@ -16,6 +17,7 @@ mod scattering;
 mod splatting;
 mod splatting_scenes;
 mod splatting_tables;
+pub mod ssdo;
 mod stylize;
 mod tables;
 mod transfer;

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Screen-space directional occlusion, the competitor of bent cones: each open direction's light is looked up.
+
+use crate::ambient::{AmbientError, BentBlur, OcclusionSettings, SurfaceImages};
+use crate::data::Environment;
+use crate::gpu::GpuError;
+use crate::pass::{Pass, PassError};
+use crate::{Gpu, Shaders, Texture};
+use airlight_validate::Definitions;
+use wgpu::TextureFormat::{Rgba16Float, Rgba32Float};
+
+/// How directions are spread over the hemisphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spread {
+    /// With the cosine: each counts alike.
+    Cosine,
+    /// Evenly over the solid angle, weighted with the cosine.
+    Even,
+}
+
+/// The passes of the competitor.
+pub struct Ssdo {
+    gather: Pass,
+    blur: Pass,
+    shade: Pass,
+}
+
+impl Ssdo {
+    /// Composes the passes; `shaders` are of [`super::baselines::with_baselines`].
+    ///
+    /// # Errors
+    /// [`PassError`].
+    pub fn new(gpu: &Gpu, shaders: &Shaders, spread: Spread) -> Result<Self, PassError> {
+        let pass = |name: &str, flag: &str, set: bool| {
+            Pass::compute_with(gpu, shaders, name, &Definitions::new().flags(&[(flag, set)]))
+        };
+        Ok(Self {
+            gather: pass("baselines/ssdo", "UNIFORM", spread == Spread::Even)?,
+            blur: pass("baselines/ssdo_blur", "SHADED", false)?,
+            shade: pass("baselines/ssdo_blur", "SHADED", true)?,
+        })
+    }
+
+    /// Records the picture, blurred over the sampling pattern: rgba16float, linear RGB radiance, alpha 1 where a surface is seen.
+    /// `albedos`: linear RGB, 0..1; `radiance`: of [`radiance_texture`].
+    ///
+    /// # Errors
+    /// [`AmbientError::Setting`], [`AmbientError::Pass`].
+    pub fn record(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        seen: SurfaceImages<'_>,
+        settings: &OcclusionSettings,
+        albedos: &Texture,
+        radiance: &Texture,
+    ) -> Result<Texture, AmbientError> {
+        settings.check()?;
+        let [width, height, _] = seen.depth.size();
+        let size = [width, height];
+        let uniform = crate::Buffer::uniform(gpu, settings);
+        let image = || Texture::storage(gpu, size, Rgba16Float);
+        let [gathered, blurred, picture] = [image(), image(), image()];
+        let resources =
+            [("settings", (&uniform).into()), ("radiance", radiance.into()), ("light", (&gathered).into())];
+        seen.dispatch(gpu, encoder, &self.gather, size, &resources)?;
+        let [along, across] = [0, 1].map(|axis| crate::Buffer::uniform(gpu, &BentBlur::over(settings, axis)));
+        let resources =
+            [("blur", (&along).into()), ("light", (&gathered).into()), ("blurred", (&blurred).into())];
+        seen.dispatch(gpu, encoder, &self.blur, size, &resources)?;
+        let resources = [
+            ("blur", (&across).into()),
+            ("light", (&blurred).into()),
+            ("albedos", albedos.into()),
+            ("blurred", (&picture).into()),
+        ];
+        seen.dispatch(gpu, encoder, &self.shade, size, &resources)?;
+        Ok(picture)
+    }
+}
+
+/// An environment map on the device.
+///
+/// # Errors
+/// [`GpuError`].
+pub fn radiance_texture(gpu: &Gpu, environment: &Environment) -> Result<Texture, GpuError> {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+    let texture = Texture::new(gpu, environment.size(), Rgba32Float, usage);
+    let texels: Vec<f32> =
+        environment.texels().iter().flat_map(|texel| [texel.x, texel.y, texel.z, 1.0]).collect();
+    texture.write(gpu, &texels)?;
+    Ok(texture)
+}

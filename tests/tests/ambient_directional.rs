@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Screen-space directional occlusion, the competitor of bent cones: that it is what its name says, and its error and noise
+//! beside theirs.
+//!
+//! `--nocapture` prints what was measured.
+#![allow(clippy::unwrap_used)]
+
+#[path = "support/competitors.rs"]
+mod competitors;
+#[path = "support/cones.rs"]
+mod cones;
+#[path = "support/gpu.rs"]
+mod gpu;
+#[path = "support/seen.rs"]
+mod seen;
+#[path = "support/standing.rs"]
+mod standing;
+
+use airlight::Texture;
+use airlight::ambient::{Method, OcclusionSettings, SurfaceImages};
+use airlight::command::ssdo::{Spread, Ssdo, radiance_texture};
+use airlight::data::Environment;
+use airlight_tests::error;
+use airlight_tests::linear::Vec3;
+use gpu::{gpu, host_vector};
+use seen::{SeenImages, cameras};
+use standing::{Standing, low_passed, settings};
+use std::f64::consts::PI;
+use wgpu::TextureFormat::Rgba32Float;
+
+/// The picture of the competitor.
+fn gathered(
+    seen: SurfaceImages<'_>,
+    settings: &OcclusionSettings,
+    albedos: &Texture,
+    map: &Environment,
+    spread: Spread,
+) -> Vec<f32> {
+    let ssdo = Ssdo::new(gpu(), competitors::shaders(), spread).unwrap();
+    let radiance = radiance_texture(gpu(), map).unwrap();
+    let mut encoder = gpu().encoder();
+    let picture = ssdo.record(gpu(), &mut encoder, seen, settings, albedos, &radiance).unwrap();
+    gpu().submit(encoder).unwrap();
+    picture.read(gpu()).unwrap()
+}
+
+/// Colours of pictures where there is a surface.
+fn colours(picture: &[f32]) -> Vec<f32> {
+    picture.chunks_exact(4).filter(|t| t[3] == 1.0).flat_map(|t| [t[0], t[1], t[2]]).collect()
+}
+
+/// Difference between two pictures, RMS over RMS of the second.
+fn difference(picture: &[f32], other: &[f32]) -> f64 {
+    error::relative_rmse(&colours(picture), &colours(other))
+}
+
+/// Slopes of the light 1 + <slope, direction>, a channel each.
+fn slopes() -> [Vec3; 3] {
+    [Vec3::new(0.0, 0.9, 0.0), Vec3::new(0.8, 0.1, -0.3), Vec3::new(-0.5, -0.4, 0.6)]
+}
+
+/// Light that is linear in the direction: 1 + <slope, direction>.
+fn linear_light() -> Environment {
+    let slopes = slopes().map(host_vector);
+    let radiance = |direction| glam::Vec3::from(slopes.map(|slope| 1.0 + slope.dot(direction)));
+    Environment::from_function([256, 128], radiance).unwrap()
+}
+
+/// Colour and surface of each pixel of pictures in closed form, the albedo grey of 0.5 undone.
+fn lit_by_linear_light(
+    images: &SeenImages,
+    settings: &OcclusionSettings,
+    spread: Spread,
+) -> Vec<([f64; 3], Option<(Vec3, Vec3)>)> {
+    let [width, height] = images.size;
+    let albedos = gpu::texture(images.size, Rgba32Float, &vec![0.5; (4 * width * height) as usize]);
+    let picture = gathered(images.images(), settings, &albedos, &linear_light(), spread);
+    let texel = |t: &[f32]| [0, 1, 2].map(|c| 2.0 * f64::from(t[c]));
+    picture.chunks_exact(4).map(texel).zip(images.surfaces.iter().copied()).collect()
+}
+
+#[test]
+fn linear_light_on_what_is_open_has_its_closed_form() {
+    let _turn = gpu::turn();
+    // A ball before nothing. With a bias of 1 nothing rises over its tangent planes.
+    let ball = |origin: Vec3, direction: Vec3| {
+        let along = origin.dot(direction);
+        let within = along * along - origin.dot(origin) + 1.0;
+        (within > 0.0).then(|| {
+            let way = -along - within.sqrt();
+            (way, (origin + direction * way).normalised())
+        })
+    };
+    let open = OcclusionSettings { bias: 1.0, ..OcclusionSettings::new(0.5) };
+    for (name, camera) in cameras(Vec3::new(1.0, 2.0, 2.5), Vec3::default(), 1.2) {
+        let images = seen::seen(camera, [96, 96], &ball);
+        for spread in [Spread::Cosine, Spread::Even] {
+            let error = |settings| {
+                let (mut worst, mut squares, mut count) = (0.0_f64, 0.0_f64, 0.0_f64);
+                for (found, surface) in lit_by_linear_light(&images, &settings, spread) {
+                    let Some((_, normal)) = surface else {
+                        assert_eq!(found, [0.0; 3]);
+                        continue;
+                    };
+                    for (value, slope) in found.iter().zip(slopes()) {
+                        // (1/pi) times the integral of (1 + <s, d>) <n, d> over the hemisphere.
+                        let error = value - (1.0 + 2.0 / 3.0 * slope.dot(normal));
+                        worst = worst.max(error.abs());
+                        squares += error * error;
+                        count += 1.0;
+                    }
+                }
+                (worst, (squares / count).sqrt())
+            };
+            let (worst, _) = error(OcclusionSettings { samples: 256, side: 1, ..open });
+            let (_, few) = error(open);
+            let (_, unblurred) = error(OcclusionSettings { side: 1, ..open });
+            println!(
+                "{name} {spread:?}: 256 directions off by {worst:.4} at most, 8 by {unblurred:.4}, 8 of 8x8 pixels by {few:.4}"
+            );
+            assert!(worst < 0.02 && few < 0.02 && few < unblurred, "{worst} {few} {unblurred}");
+        }
+    }
+}
+
+#[test]
+fn a_wall_takes_the_light_of_its_half() {
+    let _turn = gpu::turn();
+    // The wall is the plane x = 0, seen from x > 0, on the floor y = 0.
+    let surface = |origin: Vec3, direction: Vec3| {
+        let (wall, floor) = (-origin.x / direction.x, -origin.y / direction.y);
+        let wall = (direction.x < 0.0 && wall > 0.0).then_some((wall, Vec3::new(1.0, 0.0, 0.0)));
+        let floor = (direction.y < 0.0 && floor > 0.0).then_some((floor, Vec3::new(0.0, 1.0, 0.0)));
+        [wall, floor].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let place = Vec3::new(0.13, 0.0, 0.0);
+    for (name, camera) in cameras(Vec3::new(5.0, 6.0, 0.8), place, 3.5).into_iter().skip(1) {
+        let images = seen::seen(camera, [384, 384], &surface);
+        for spread in [Spread::Cosine, Spread::Even] {
+            let at = images.reference.project(place).unwrap();
+            let side = f64::from(images.size[0]);
+            let pixel =
+                (0.5 * (1.0 - at[1]) * side) as usize * side as usize + (0.5 * (1.0 + at[0]) * side) as usize;
+            let (found, _) = lit_by_linear_light(&images, &seen::many(20.0), spread)[pixel];
+            // Integrals of 1, y and x times y over the quarter of the sphere with x > 0, over pi.
+            let expected = slopes().map(|s| 0.5 + s.y / 3.0 + 2.0 * s.x / (3.0 * PI));
+            println!("{name} {spread:?}: {found:.4?}, expected {expected:.4?}");
+            assert!((0..3).all(|c| (found[c] - expected[c]).abs() < 0.03), "{found:?} {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn cones_of_few_directions_beside_many_look_ups() {
+    let _turn = gpu::turn();
+    for (name, turn) in [("bunny.obj", 0.3), ("suzanne.obj", 0.3)] {
+        let standing = Standing::new(name, turn, [160, 120]);
+        for file in ["forest.exr", "sunset.exr"] {
+            let (map, host_map) = low_passed(file);
+            let light = cones::lit(&host_map, 32, false);
+            let truth = standing.truth(&map);
+            let of = |samples| OcclusionSettings { samples, ..settings() };
+            let albedos = &standing.geometry.albedos;
+            let ssdo =
+                |samples, spread| gathered(standing.images(), &of(samples), albedos, &host_map, spread);
+            let cones = |samples, method| standing.drawn(&light.cones, method, false, &of(samples));
+            let screen = ssdo(256, Spread::Cosine);
+            for method in [Method::Cones, Method::ExactCones] {
+                let own = cones(256, method);
+                for samples in [4, 8, 16, 256] {
+                    let picture = cones(samples, method);
+                    println!(
+                        "{name} {file} {method:?} {samples}: truth {:.4}, own limit {:.4}, screen's truth {:.4}",
+                        standing::error(&picture, &truth),
+                        difference(&picture, &own),
+                        difference(&picture, &screen)
+                    );
+                }
+            }
+            for spread in [Spread::Cosine, Spread::Even] {
+                let own = ssdo(256, spread);
+                for samples in [4, 8, 12, 16, 24, 32, 64, 256] {
+                    let picture = ssdo(samples, spread);
+                    println!(
+                        "{name} {file} SSDO {spread:?} {samples}: truth {:.4}, own limit {:.4}, screen's truth {:.4}",
+                        standing::error(&picture, &truth),
+                        difference(&picture, &own),
+                        difference(&picture, &screen)
+                    );
+                }
+            }
+        }
+    }
+}
