@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Every struct that host and shaders share lies in memory as naga says: each field is written alone
-//! through encase, and its bytes are looked for at the offset that reflection reports.
-#![allow(clippy::unwrap_used)]
+//! The Rust twin of every struct that host and shaders share: size, fields and the bytes that encase writes.
 
+use crate::sentinels::Sentinel;
 use airlight::ambient::{BentBlur, OcclusionSettings};
 use airlight::core::{
     BrickThreshold, Camera, Light, MAX_VIEWS, ResolveDepthParameters, ShadowViews, Sky, SortParameters,
@@ -25,185 +24,20 @@ use airlight::stylize::{
     TransferShare, Window,
 };
 use airlight::transmittance::{MediumLighting, SplatTarget};
-use airlight_validate::{BindingKind, Library, Member, StructLayout};
 use encase::{ShaderType, UniformBuffer, internal::WriteInto};
 use glam::{Mat4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
-use std::collections::{BTreeMap, BTreeSet};
-
-/// Twins that the host keeps to itself; the tests of the systems named here would fail without them.
-const PRIVATE: [(&str, &str); 1] = [("ScanParameters", "tests/tests/core.rs, scans")];
-
-/// The same distinct numbers in every field, whatever its type.
-trait Sentinel: Copy {
-    /// The WGSL type.
-    const TYPE: &'static str;
-    fn zero() -> Self;
-    fn sentinel() -> Self;
-    /// Words of the sentinel, and where each lies from the field's offset.
-    fn words() -> Vec<(u32, u32)>;
-}
-
-impl Sentinel for f32 {
-    const TYPE: &'static str = "f32";
-    fn zero() -> Self {
-        0.0
-    }
-    fn sentinel() -> Self {
-        1.25
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 1.25_f32.to_bits())]
-    }
-}
-
-impl Sentinel for u32 {
-    const TYPE: &'static str = "u32";
-    fn zero() -> Self {
-        0
-    }
-    fn sentinel() -> Self {
-        0x0102_0304
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 0x0102_0304)]
-    }
-}
-
-impl Sentinel for Vec2 {
-    const TYPE: &'static str = "vec2<f32>";
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn sentinel() -> Self {
-        Self::new(1.5, 2.5)
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits())]
-    }
-}
-
-impl Sentinel for Vec3 {
-    const TYPE: &'static str = "vec3<f32>";
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn sentinel() -> Self {
-        Self::new(1.5, 2.5, 3.5)
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits())]
-    }
-}
-
-impl Sentinel for Vec4 {
-    const TYPE: &'static str = "vec4<f32>";
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn sentinel() -> Self {
-        Self::new(1.5, 2.5, 3.5, 4.5)
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 1.5_f32.to_bits()), (4, 2.5_f32.to_bits()), (8, 3.5_f32.to_bits()), (12, 4.5_f32.to_bits())]
-    }
-}
-
-impl Sentinel for UVec2 {
-    const TYPE: &'static str = "vec2<u32>";
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn sentinel() -> Self {
-        Self::new(1, 2)
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 1), (4, 2)]
-    }
-}
-
-impl Sentinel for UVec3 {
-    const TYPE: &'static str = "vec3<u32>";
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn sentinel() -> Self {
-        Self::new(1, 2, 3)
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 1), (4, 2), (8, 3)]
-    }
-}
-
-impl Sentinel for UVec4 {
-    const TYPE: &'static str = "vec4<u32>";
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn sentinel() -> Self {
-        Self::new(1, 2, 3, 4)
-    }
-    fn words() -> Vec<(u32, u32)> {
-        vec![(0, 1), (4, 2), (8, 3), (12, 4)]
-    }
-}
-
-impl Sentinel for Mat4 {
-    const TYPE: &'static str = "mat4x4<f32>";
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn sentinel() -> Self {
-        Self::from_cols_array(&std::array::from_fn(|i| i as f32 + 1.0))
-    }
-    // Column after column: WGSL's m[column][row], a column every 16 bytes.
-    fn words() -> Vec<(u32, u32)> {
-        (0..16).map(|i| (4 * i, (i as f32 + 1.0).to_bits())).collect()
-    }
-}
-
-impl Sentinel for [Mat4; MAX_VIEWS] {
-    const TYPE: &'static str = "array<mat4x4<f32>, 6>";
-    fn zero() -> Self {
-        [Mat4::ZERO; MAX_VIEWS]
-    }
-    fn sentinel() -> Self {
-        std::array::from_fn(|view| Mat4::sentinel() * (view as f32 + 1.0))
-    }
-    fn words() -> Vec<(u32, u32)> {
-        let of = |view: u32| (0..16).map(move |i| (64 * view + 4 * i, ((i + 1) * (view + 1)) as f32));
-        (0..MAX_VIEWS as u32).flat_map(of).map(|(at, value)| (at, value.to_bits())).collect()
-    }
-}
-
-impl Sentinel for [Vec4; MOST_CLIP_PLANES] {
-    const TYPE: &'static str = "array<vec4<f32>, 8>";
-    fn zero() -> Self {
-        [Vec4::ZERO; MOST_CLIP_PLANES]
-    }
-    fn sentinel() -> Self {
-        std::array::from_fn(|plane| Vec4::sentinel() * (plane as f32 + 1.0))
-    }
-    fn words() -> Vec<(u32, u32)> {
-        let scaled = |plane: u32, word: u32| (f32::from_bits(word) * (plane + 1) as f32).to_bits();
-        let of = |plane: u32| {
-            <Vec4 as Sentinel>::words()
-                .into_iter()
-                .map(move |(at, word)| (16 * plane + at, scaled(plane, word)))
-        };
-        (0..MOST_CLIP_PLANES as u32).flat_map(of).collect()
-    }
-}
+use std::collections::BTreeMap;
 
 /// Name, WGSL type, words of its sentinel, and the whole struct's bytes with only this field set.
 type Field = (&'static str, &'static str, Vec<(u32, u32)>, Vec<u8>);
 
 /// What is known of a Rust twin.
-struct Twin {
-    size: u64,
-    fields: Vec<Field>,
+pub struct Twin {
+    pub size: u64,
+    pub fields: Vec<Field>,
 }
 
-fn bytes<T: ShaderType + WriteInto>(value: &T) -> Vec<u8> {
+pub fn bytes<T: ShaderType + WriteInto>(value: &T) -> Vec<u8> {
     let mut buffer = UniformBuffer::new(Vec::<u8>::new());
     buffer.write(value).unwrap();
     buffer.into_inner()
@@ -223,7 +57,7 @@ macro_rules! twin {
     }};
 }
 
-fn twins() -> BTreeMap<&'static str, Twin> {
+pub fn twins() -> BTreeMap<&'static str, Twin> {
     let mut twins = BTreeMap::new();
     twin!(twins: Camera {
         clip_from_world: Mat4, world_from_clip: Mat4, eye: Vec3, near_depth: f32,
@@ -361,101 +195,4 @@ fn twins() -> BTreeMap<&'static str, Twin> {
         size: UVec2, texel: Vec2, height: f32, local: u32, filling: f32, deepest: f32,
     });
     twins
-}
-
-/// What is wrong with a twin; none where it fits.
-fn difference(layout: &StructLayout, twin: &Twin) -> Option<String> {
-    let name = &layout.name;
-    if u64::from(layout.size) != twin.size {
-        return Some(format!("{name} has {} bytes in WGSL and {} in Rust", layout.size, twin.size));
-    }
-    let shader: Vec<&str> = layout.members.iter().map(|member| member.name.as_str()).collect();
-    let host: Vec<&str> = twin.fields.iter().map(|field| field.0).collect();
-    if shader != host {
-        return Some(format!("{name} has {shader:?} in WGSL and {host:?} in Rust"));
-    }
-    for (member, (field, ty, words, bytes)) in layout.members.iter().zip(&twin.fields) {
-        if member.ty != *ty {
-            return Some(format!("{name}.{field} is {} in WGSL and {ty} in Rust", member.ty));
-        }
-        let mut expected = vec![0_u8; twin.size as usize];
-        for (at, word) in words {
-            let at = (member.offset + at) as usize;
-            expected[at..at + 4].copy_from_slice(&word.to_le_bytes());
-        }
-        if *bytes != expected {
-            let at = bytes.iter().position(|byte| *byte != 0);
-            return Some(format!("{name}.{field} is at {} in WGSL and at {at:?} in Rust", member.offset));
-        }
-    }
-    None
-}
-
-/// Every struct of a uniform or of the storage buffer that later passes read as one, with its pass.
-fn shared_structs() -> Vec<(String, StructLayout)> {
-    let library = Library::builtin();
-    let mut found = Vec::new();
-    for pass in library.passes() {
-        for permutation in library.permutations(&pass.name).unwrap() {
-            let reflection = library.compose(&pass.name, &permutation.definitions).unwrap().reflect();
-            for binding in &reflection.bindings {
-                let (BindingKind::Uniform { ty, .. } | BindingKind::Storage { ty, .. }) = &binding.kind
-                else {
-                    continue;
-                };
-                let place = format!("{}:{} binding {}", pass.name, permutation.name, binding.name);
-                match (reflection.layout(ty), &binding.kind) {
-                    (Some(layout), _) => found.push((place, layout.clone())),
-                    (None, BindingKind::Uniform { .. }) => {
-                        panic!("{place}: uniform of {ty}, which is no struct")
-                    }
-                    (None, _) => {}
-                }
-            }
-        }
-    }
-    found
-}
-
-#[test]
-fn every_shared_struct_has_a_twin_with_the_same_layout() {
-    let twins = twins();
-    let mut seen = BTreeSet::new();
-    for (place, layout) in shared_structs() {
-        if PRIVATE.iter().any(|(name, _)| *name == layout.name) {
-            seen.insert(layout.name);
-            continue;
-        }
-        let twin = twins.get(layout.name.as_str());
-        let twin =
-            twin.unwrap_or_else(|| panic!("{place}: the struct {} has no Rust twin here", layout.name));
-        assert_eq!(difference(&layout, twin), None, "{place}");
-        // Uniforms are bound whole: WGSL's alignment of structs is 16.
-        assert_eq!(twin.size % 16, 0, "{place}");
-        seen.insert(layout.name);
-    }
-    let known: BTreeSet<String> =
-        twins.keys().chain(PRIVATE.iter().map(|(name, _)| name)).map(|name| (*name).to_owned()).collect();
-    assert_eq!(seen, known, "a twin whose struct no pass has any more");
-}
-
-#[test]
-fn a_wrong_layout_is_noticed() {
-    let twins = twins();
-    let (_, right) = shared_structs().into_iter().find(|(_, layout)| layout.name == "Medium").unwrap();
-    let twin = &twins["Medium"];
-    assert_eq!(difference(&right, twin), None);
-    let wrong = |change: fn(&mut StructLayout)| {
-        let mut layout = right.clone();
-        change(&mut layout);
-        difference(&layout, twin)
-    };
-    assert!(wrong(|l| l.size += 16).unwrap().contains("48 bytes"));
-    assert!(wrong(|l| l.members[1].offset = 16).unwrap().contains("Medium.extinction"));
-    assert!(wrong(|l| l.members.swap(1, 2)).is_some());
-    assert!(wrong(|l| l.members[2].ty = "u32".to_owned()).unwrap().contains("u32"));
-    let extra = Member { name: "x".to_owned(), ty: "f32".to_owned(), offset: 28, size: 4, stride: None };
-    let mut longer = right.clone();
-    longer.members.push(extra);
-    assert!(difference(&longer, twin).is_some());
 }
