@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Six moments of columns with weights and fall-offs of their own on the GPU: the filter against f64 prefix means whatever
-//! the weights, and its reads against the f64 reference. Pictures are compared in `local_lights.rs` and `projective.rs`.
+//! the weights, and its reads against the f64 reference. Pictures are compared in `local_lights.rs` and `projective/pictures.rs`.
 //!
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]

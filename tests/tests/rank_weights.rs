@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rank structures over columns with weights of their own on the GPU, held to a brute-force sum over the stepped map
-//! within their proven bound, whatever the weights. Pictures are compared in `local_lights.rs` and `projective.rs`.
+//! within their proven bound, whatever the weights. Pictures are compared in `local_lights.rs` and `projective/pictures.rs`.
 //!
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]

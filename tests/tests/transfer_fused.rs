@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Transfer functions fused into the evaluation of light shafts, against `Restyle` after the plain evaluation, which
-//! tests/tests/transfer.rs holds against f64.
+//! tests/tests/transfer holds against f64.
 //!
 //! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]

@@ -4,7 +4,7 @@
 
 use crate::gpu::{gpu, shaders};
 use crate::sheets::colored;
-use airlight::core::{Camera, Light};
+use airlight::core::{Camera, DepthRange, Light, OrthographicView};
 use airlight::splatting::{SheetFrame, SheetLighting, SheetNumber, Sheets, SoftPlane, SoftShadows};
 use airlight::{Buffer, Pass, Sampler, Texture};
 use airlight_tests::linear;
@@ -20,6 +20,19 @@ pub fn texel_ray(camera: &Camera, texel: [u32; 2]) -> (DVec3, DVec3) {
         point.truncate() / point.w
     });
     (near, (far - near).normalize())
+}
+
+/// A camera with parallel rays along `direction`, through the origin; `height` metres high.
+pub fn parallel(direction: Vec3, height: f32, side: u32) -> Camera {
+    let view = OrthographicView {
+        eye: -60.0 * direction,
+        target: Vec3::ZERO,
+        height,
+        near: 0.0,
+        far: 120.0,
+        depth: DepthRange::Forward,
+    };
+    Camera::orthographic(&view, [side; 2]).unwrap()
 }
 
 /// A light on sheets.
@@ -39,8 +52,7 @@ impl Lit {
         side: u32,
         settings: &SoftShadows,
     ) -> Self {
-        let camera =
-            SheetFrame { camera: crate::parallel(view, 10.0, 8), light, lighting: SheetLighting::new(1.0) };
+        let camera = SheetFrame { camera: parallel(view, 10.0, 8), light, lighting: SheetLighting::new(1.0) };
         let middle = points.iter().sum::<Vec3>() / points.len() as f32;
         let way = if light.kind == 0 { -light.direction } else { middle - light.position };
         let sheets = Sheets::between(view, way, count, points, |_| 0.0).unwrap();

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Soft shadows between sheets: penumbras of half-planes have the width that geometry says, at any tilt and distance, and a ball's
+//! shadow is that of a ball.
+//!
+//! `--nocapture` prints what was measured.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../support/gpu.rs"]
+mod gpu;
+#[path = "../support/probing.rs"]
+mod probing;
+#[path = "../support/sheets.rs"]
+mod sheets;
+#[path = "../support/soft.rs"]
+mod soft;
+
+mod ball;
+mod blur;
+mod half_planes;
+mod lights;
+mod limits;
+mod slab;
