@@ -9,12 +9,10 @@ mod gpu;
 mod seen;
 
 use airlight::Texture;
-use airlight::ambient::{
-    AmbientError, BentForm, BentPasses, Blurring, OcclusionSettings, Sampling, SurfaceImages,
-};
+use airlight::ambient::{AmbientError, BentForm, Blurring, OcclusionSettings, Sampling, SurfaceImages};
 use airlight_tests::linear::Vec3;
-use gpu::{gpu, shaders};
-use seen::{SeenImages, cameras, seen, sharp};
+use gpu::{Random, gpu, texture};
+use seen::{SeenImages, cameras, from_above, seen, sharp};
 use wgpu::TextureFormat::{R32Float, Rgba32Float};
 
 const SIZE: [u32; 2] = [75, 53];
@@ -47,8 +45,7 @@ fn openness_alone_is_the_openness_beside_bent_normals() {
         for blurring in [Blurring::Off, Blurring::Difference] {
             let form = BentForm { blurring, ..sharp(sampling) };
             let both = images.bent(form, &settings());
-            let passes =
-                BentPasses::new(gpu(), shaders(), BentForm { occlusion_only: true, ..form }).unwrap();
+            let passes = seen::passes(BentForm { occlusion_only: true, ..form });
             let mut encoder = gpu().encoder();
             let alone = passes.record(gpu(), &mut encoder, images.images(), &settings()).unwrap();
             gpu().submit(encoder).unwrap();
@@ -105,6 +102,76 @@ fn half_the_resolution_is_nearly_the_whole() {
 }
 
 #[test]
+fn half_the_resolution_keeps_to_its_side_of_an_edge() {
+    let _turn = gpu::turn();
+    // A block on a floor, from above: nothing hides its top, and it hides much of the floor beside it.
+    let block = |x: f64, _: f64| Some((if x < -0.1 { 0.6 } else { 0.0 }, Vec3::new(0.0, 1.0, 0.0)));
+    let images = from_above([40, 40], 1.0, true, &block);
+    let settings = OcclusionSettings { samples: 16, steps: 12, ..OcclusionSettings::new(1.0) };
+    let whole = images.bent(sharp(Sampling::Hemisphere), &settings);
+    let halved = images.bent(BentForm { halved: true, ..sharp(Sampling::Hemisphere) }, &settings);
+    // Means over the two columns on a side, which are one halved column, for all rows are alike.
+    let side = |all: &[(Vec3, f64)], columns: std::ops::Range<usize>| {
+        let rows = all.chunks_exact(40).skip(8).take(24);
+        rows.flat_map(|row| row[columns.clone()].to_vec()).fold((Vec3::default(), 0.0), |sum, pixel| {
+            (sum.0 + pixel.0 * (1.0 / 48.0), sum.1 + pixel.1 / 48.0)
+        })
+    };
+    for (what, columns, open) in [("top", 16..18, 0.999..=1.0), ("floor", 18..20, 0.75..=0.9)] {
+        let (whole, halved) = (side(&whole, columns.clone()), side(&halved, columns));
+        println!("{what}: whole {whole:.3?}, halved {halved:.3?}");
+        assert!(open.contains(&whole.1), "{what}: {whole:?}");
+        assert!((whole.1 - halved.1).abs() < 0.012, "{what}: {whole:?} {halved:?}");
+        assert!((whole.0 - halved.0).length() < 0.012, "{what}: {whole:?} {halved:?}");
+    }
+}
+
+#[test]
+fn noise_of_any_size_leaves_finite_parts_of_the_hemisphere() {
+    let _turn = gpu::turn();
+    let mut random = Random(41);
+    let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3.0, 1e30, -1e30, 0.0, 1.0];
+    let mut any = |low: f64| {
+        if random.unit() < 0.2 { wild[random.below(wild.len())] } else { random.between(low, 1.0) as f32 }
+    };
+    let pictures = [[1, 1], [3, 5], [17, 9]].map(|size: [u32; 2]| {
+        let pixels = (size[0] * size[1]) as usize;
+        let depths: Vec<f32> = (0..pixels).map(|_| any(0.0)).collect();
+        let normals: Vec<f32> = (0..4 * pixels).map(|_| any(-1.0)).collect();
+        (size, texture(size, R32Float, &depths), texture(size, Rgba32Float, &normals))
+    });
+    let [_, (_, reference), _] = cameras(Vec3::new(1.5, 1.8, 0.6), Vec3::default(), 1.0);
+    let mut forms = Vec::new();
+    for sampling in ALL {
+        let form = BentForm { blurring: Blurring::Difference, ..sharp(sampling) };
+        forms.extend([sharp(sampling), BentForm { halved: true, ..form }]);
+    }
+    forms.push(BentForm { blurring: Blurring::Plain, ..sharp(Sampling::Disc) });
+    forms.push(BentForm { occlusion_only: true, blurring: Blurring::Plain, ..sharp(Sampling::Disc) });
+    for form in forms {
+        let passes = seen::passes(form);
+        for (size, depth, normals) in &pictures {
+            let camera = gpu::host_camera(&reference, *size);
+            let seen = SurfaceImages { camera: &camera, depth, normals };
+            let mut encoder = gpu().encoder();
+            let bent = passes.record(gpu(), &mut encoder, seen, &settings()).unwrap();
+            gpu().submit(encoder).unwrap();
+            let found = bent.read(gpu()).unwrap();
+            assert!(found.iter().all(|value| value.is_finite()), "{form:?} {size:?}");
+            if form.occlusion_only {
+                assert!(found.iter().all(|open| (0.0..=1.0).contains(open)), "{form:?} {size:?}");
+                continue;
+            }
+            for texel in found.chunks_exact(4) {
+                let length = Vec3::from([texel[0], texel[1], texel[2]]).length();
+                // Directions are stored as halves.
+                assert!(length < 1.001 && (0.0..=1.0).contains(&texel[3]), "{form:?} {size:?}: {texel:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn broken_depths_and_normals_leave_nothing_that_is_not_finite() {
     let _turn = gpu::turn();
     let images = yard(0.2);
@@ -128,7 +195,7 @@ fn broken_depths_and_normals_leave_nothing_that_is_not_finite() {
     for sampling in ALL {
         for halved in [false, true] {
             let form = BentForm { blurring: Blurring::Difference, halved, ..sharp(sampling) };
-            let passes = BentPasses::new(gpu(), shaders(), form).unwrap();
+            let passes = seen::passes(form);
             let mut encoder = gpu().encoder();
             let bent = passes.record(gpu(), &mut encoder, seen, &settings()).unwrap();
             gpu().submit(encoder).unwrap();
@@ -143,7 +210,7 @@ fn broken_depths_and_normals_leave_nothing_that_is_not_finite() {
 fn impossible_settings_are_refused() {
     let _turn = gpu::turn();
     let images = yard(0.0);
-    let passes = BentPasses::new(gpu(), shaders(), sharp(Sampling::Hemisphere)).unwrap();
+    let passes = seen::passes(sharp(Sampling::Hemisphere));
     let possible = settings();
     for wrong in [
         OcclusionSettings { samples: 0, ..possible },

@@ -3,11 +3,13 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{self, gpu, shaders};
-use airlight::Texture;
 use airlight::ambient::{BentForm, BentPasses, Blurring, OcclusionSettings, Sampling, SurfaceImages};
 use airlight::core::Camera;
+use airlight::validate::Definitions;
+use airlight::{Pass, Resource, Texture};
 use airlight_tests::linear::Vec3;
 use airlight_tests::reference::camera::{Camera as ReferenceCamera, OrthographicView, View};
+use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::TextureFormat::{R32Float, Rgba32Float};
 
 /// A surface: the distance along a ray of a unit direction from an origin, and the unit normal there.
@@ -61,9 +63,18 @@ impl SeenImages {
 
     /// Mean direction and openness of each pixel.
     pub fn bent(&self, form: BentForm, settings: &OcclusionSettings) -> Vec<(Vec3, f64)> {
-        let passes = BentPasses::new(gpu(), shaders(), form).unwrap();
+        self.bent_of(self.images(), form, settings)
+    }
+
+    /// The same of other images.
+    pub fn bent_of(
+        &self,
+        images: SurfaceImages<'_>,
+        form: BentForm,
+        settings: &OcclusionSettings,
+    ) -> Vec<(Vec3, f64)> {
         let mut encoder = gpu().encoder();
-        let bent = passes.record(gpu(), &mut encoder, self.images(), settings).unwrap();
+        let bent = passes(form).record(gpu(), &mut encoder, images, settings).unwrap();
         gpu().submit(encoder).unwrap();
         let texels = bent.read(gpu()).unwrap();
         let texel = |t: &[f32]| (Vec3::from([t[0], t[1], t[2]].map(f64::from)), f64::from(t[3]));
@@ -84,6 +95,49 @@ impl SeenImages {
         }
         (sum * (1.0 / open), open / 64.0)
     }
+}
+
+/// What is seen by parallel rays from straight above: columns along x, rows along z, the origin in the middle. `heights`: at (x, z) the
+/// height, below 4 m, and the unit normal. `half_height`: metres.
+pub fn from_above(
+    size: [u32; 2],
+    half_height: f64,
+    reversed: bool,
+    heights: &dyn Fn(f64, f64) -> Option<(f64, Vec3)>,
+) -> SeenImages {
+    let camera = ReferenceCamera::orthographic(&OrthographicView {
+        eye: Vec3::new(0.0, 4.0, 0.0),
+        target: Vec3::default(),
+        up: Vec3::new(0.0, 0.0, -1.0),
+        half_height,
+        aspect: f64::from(size[0]) / f64::from(size[1]),
+        depth: 8.0,
+        reversed,
+    });
+    let surface =
+        |from: Vec3, _: Vec3| heights(from.x, from.z).map(|(height, normal)| (from.y - height, normal));
+    seen(camera, size, &surface)
+}
+
+/// The passes of a form, composed once.
+pub fn passes(form: BentForm) -> Arc<BentPasses> {
+    static COMPOSED: Mutex<Vec<(BentForm, Arc<BentPasses>)>> = Mutex::new(Vec::new());
+    let mut composed = COMPOSED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, passes)) = composed.iter().find(|(of, _)| *of == form) {
+        return passes.clone();
+    }
+    let passes = Arc::new(BentPasses::new(gpu(), shaders(), form).unwrap());
+    composed.push((form, passes.clone()));
+    passes
+}
+
+/// Runs a pass of the system by itself over `size`.
+pub fn run_alone(name: &str, flags: &[(&str, bool)], size: [u32; 2], resources: &[(&str, Resource<'_>)]) {
+    let pass = Pass::compute_with(gpu(), shaders(), name, &Definitions::new().flags(flags)).unwrap();
+    let bound = pass.bind(gpu(), resources).unwrap();
+    let mut encoder = gpu().encoder();
+    pass.dispatch(&mut encoder, &bound, [size[0], size[1], 1]);
+    gpu().submit(encoder).unwrap();
 }
 
 /// A form without a blur.
