@@ -3,8 +3,8 @@
 
 mod conflicts;
 mod flags;
-mod shown;
-mod studio;
+pub(super) mod shown;
+pub(super) mod studio;
 pub(super) mod traced;
 
 pub use flags::Options;
@@ -28,7 +28,7 @@ const FROM: Vec3 = Vec3::new(-0.4, 0.3, 1.0);
 /// Radius of occlusion over the diagonal of the box around the meshes.
 const REACH: f32 = 0.2;
 /// Texels of environments that cones can follow.
-const LOW_PASS: [u32; 2] = [32, 16];
+pub(super) const LOW_PASS: [u32; 2] = [32, 16];
 /// The map where none is asked for.
 const ENVIRONMENT: &str = "forest";
 

@@ -2,6 +2,7 @@
 //! `airlight gallery`: every picture from real data, with an index page.
 
 mod album;
+mod ambient;
 mod epipole;
 mod inverse;
 mod lights;
@@ -57,6 +58,8 @@ enum Subject {
     Splatting(&'static str),
     /// Volumes and light from painted views.
     Inverse(&'static str),
+    /// Surfaces under environment maps.
+    Ambient(&'static str),
 }
 
 /// What is shown of light shafts where nothing is chosen.
@@ -81,8 +84,9 @@ fn all() -> Vec<Subject> {
     let painterly = painterly::NAMES.map(Subject::Painterly);
     let splatting = splatting::NAMES.map(Subject::Splatting);
     let inverse = inverse::NAMES.map(Subject::Inverse);
+    let ambient = ambient::NAMES.map(Subject::Ambient);
     let before = scattering.chain(stylize).chain(transmittance);
-    before.chain(painterly).chain(splatting).chain(inverse).collect()
+    before.chain(painterly).chain(splatting).chain(inverse).chain(ambient).collect()
 }
 
 /// Runs the command.
@@ -105,6 +109,7 @@ pub fn run(options: &Options, quiet: bool) -> Result<(), CommandError> {
             Subject::Painterly(name) => painterly::section(&studio, &subject.folder(), name),
             Subject::Splatting(name) => splatting::section(&studio, &subject.folder(), name),
             Subject::Inverse(name) => inverse::section(&studio, &subject.folder(), name),
+            Subject::Ambient(name) => ambient::section(&studio, &subject.folder(), name),
         };
         sections.push(section?);
         bar.inc(1);
@@ -127,6 +132,7 @@ impl Subject {
             Self::Painterly(_) => "painterly",
             Self::Splatting(_) => "splatting",
             Self::Inverse(_) => "inverse",
+            Self::Ambient(_) => "ambient",
             _ => "scattering",
         }
     }
@@ -139,7 +145,8 @@ impl Subject {
             | Self::Transmittance(name)
             | Self::Painterly(name)
             | Self::Splatting(name)
-            | Self::Inverse(name) => name,
+            | Self::Inverse(name)
+            | Self::Ambient(name) => name,
             Self::Methods(_) => "methods",
             Self::Epipole => "epipole",
             Self::Lights => "lights",
@@ -178,7 +185,7 @@ fn choose(only: Option<&str>) -> Result<Vec<Subject>, CommandError> {
     let mut known: Vec<String> = subjects.into_iter().map(Subject::path).collect();
     known.dedup();
     let known = known.join(", ");
-    let systems = "scattering, stylize, transmittance, painterly, splatting, inverse";
+    let systems = "scattering, stylize, transmittance, painterly, splatting, inverse, ambient";
     let reason = format!("there is no `{only}`; there is {systems}, {known}");
     Err(CommandError::misuse("--only", reason))
 }
