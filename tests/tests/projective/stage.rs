@@ -81,10 +81,17 @@ impl Stage {
 
     /// The exact picture over the map that the GPU made.
     pub fn exact(&self, map: &Texture, splits: u32) -> reference::Picture {
-        self.exact_from(map, splits, reference::Start::Eye)
+        self.exact_from(map, splits, reference::Start::Eye, 1)
     }
 
-    pub fn exact_from(&self, map: &Texture, splits: u32, start: reference::Start) -> reference::Picture {
+    /// Of every `stride`-th pixel in x and y.
+    pub fn exact_from(
+        &self,
+        map: &Texture,
+        splits: u32,
+        start: reference::Start,
+        stride: usize,
+    ) -> reference::Picture {
         let depth = self.pictures.depth.read(gpu()).unwrap();
         let [width, height, _] = self.pictures.depth.size();
         let scene = reference::Scene {
@@ -97,7 +104,7 @@ impl Stage {
         };
         let [columns, rows, _] = map.size();
         let rows = self.reference_rows([columns, rows], splits);
-        reference::projective_picture(&scene, &rows, &map.read(gpu()).unwrap(), start, 1)
+        reference::projective_picture(&scene, &rows, &map.read(gpu()).unwrap(), start, stride)
     }
 
     pub fn map(&self, map: [u32; 2], splits: u32) -> ProjectiveMap {
@@ -132,6 +139,16 @@ impl Stage {
         method.record(&mut encoder, &bound);
         gpu().submit(encoder).unwrap();
         (scattered(&method.scattered), method)
+    }
+
+    /// What a method that is there makes of this scene.
+    pub fn evaluated(&self, method: &ProjectivePrefiltered, splits: u32) -> Scattered {
+        method.write(gpu(), &self.projective(splits)).unwrap();
+        let bound = method.bind(gpu(), &self.inputs()).unwrap();
+        let mut encoder = gpu().encoder();
+        method.record(&mut encoder, &bound);
+        gpu().submit(encoder).unwrap();
+        scattered(&method.scattered)
     }
 
     pub fn marched(&self, map: &ProjectiveMap, weighting: Weighting) -> Scattered {
