@@ -211,6 +211,38 @@ fn light_passes_under_a_thin_bar_and_not_under_a_thick_one() {
 }
 
 #[test]
+fn steps_are_taken_at_every_part_of_them() {
+    let _turn = gpu::turn();
+    // One step, at the square of a part that differs between pixels: only some of them meet the bar.
+    let (radius, thickness) = (2.4, 0.6);
+    let one = OcclusionSettings { radius: radius as f32, samples: 12, steps: 1, ..settings(thickness) };
+    for sampling in [Sampling::Hemisphere, Sampling::Horizon, Sampling::Bitmask] {
+        let visibility = |direction: Vec3, aside: f64| {
+            let Some([first, last]) = under(direction, aside) else { return Some(1.0) };
+            let across = direction.x.hypot(direction.z);
+            let blocked = (0..64).map(|part| {
+                let reach = radius * ((f64::from(part) + 0.5) / 64.0).powi(2);
+                let along = if sampling == Sampling::Hemisphere { reach * across } else { reach };
+                let weight = fall_off(along.hypot(HIGH), radius);
+                if along < first || along > last || along * direction.z.abs() > HALF * across {
+                    return 0.0;
+                }
+                let angle = across.atan2(direction.y);
+                match sampling {
+                    Sampling::Horizon => f64::from(u8::from(direction.y < weight * HIGH / along.hypot(HIGH))),
+                    // Below the bar's top, or from its front edge down.
+                    Sampling::Hemisphere if reach * direction.y < HIGH => weight,
+                    Sampling::Bitmask if angle > along.atan2(HIGH) => weight,
+                    _ => 0.0,
+                }
+            });
+            Some(1.0 - blocked.sum::<f64>() / 64.0)
+        };
+        hold(&format!("{sampling:?}, one step"), sampling, &one, &visibility);
+    }
+}
+
+#[test]
 fn what_rises_by_less_than_the_bias_hides_nothing() {
     let _turn = gpu::turn();
     // A valley whose sides rise by 3 degrees each: the sine of one's elevation over the other is at most 0.105.
@@ -264,6 +296,21 @@ fn pixels_without_a_surface_are_open_and_hide_nothing() {
                 assert!(seen.is_some() || mean == Vec3::default(), "{name} {sampling:?}: {mean:?}");
                 assert!(seen.is_none() || mean.dot(UP) > 0.3, "{name} {sampling:?}: {mean:?}");
             }
+        }
+    }
+}
+
+#[test]
+fn every_pixel_has_its_own_surface() {
+    let _turn = gpu::turn();
+    // Every second pixel has one, at the border as well.
+    let size = [9, 7];
+    let odd = |x: f64, z: f64| (((x + 4.5).floor() + (z + 3.5).floor()) as i32) % 2 == 1;
+    let images = from_above(size, 3.5, true, &|x, z| odd(x, z).then_some((0.0, UP)));
+    for sampling in ALL {
+        let all = images.bent(sharp(sampling), &settings(0.1));
+        for (pixel, (mean, _)) in all.into_iter().enumerate() {
+            assert_eq!(mean == Vec3::default(), images.surfaces[pixel].is_none(), "{sampling:?} {pixel}");
         }
     }
 }

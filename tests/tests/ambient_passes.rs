@@ -47,9 +47,13 @@ fn floors(size: [u32; 2], reversed: bool, pixels: &[Floor]) -> SeenImages {
     })
 }
 
-/// Numbers that halves hold exactly, four a pixel.
+/// Directions and openness that halves hold exactly, four numbers a pixel. Directions are short enough to stay in the unit sphere about any
+/// of the normals.
 fn values(random: &mut Random, pixels: usize) -> Vec<f32> {
-    (0..4 * pixels).map(|_| (64.0 * random.unit()).floor() as f32 / 64.0).collect()
+    let mut part = || (64.0 * random.unit()).floor() as f32 / 64.0;
+    (0..pixels)
+        .flat_map(|_| [0.5 * part() - 0.25, 0.5 * part() - 0.25, 0.5 * part() - 0.25, part()])
+        .collect()
 }
 
 /// Steps between floors and what pixels of two of them count to each other, of a reach of 0.4 m.
