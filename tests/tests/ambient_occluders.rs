@@ -16,7 +16,7 @@ use airlight::ambient::{OcclusionSettings, Sampling, SurfaceImages};
 use airlight_tests::linear::Vec3;
 use gpu::gpu;
 use seen::{SeenImages, cameras, from_above, seen, sharp};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 use wgpu::TextureFormat::Rgba32Float;
 
 const ALL: [Sampling; 4] = [Sampling::Hemisphere, Sampling::Disc, Sampling::Horizon, Sampling::Bitmask];
@@ -31,11 +31,11 @@ const HIGH: f64 = 0.5;
 /// Where it begins and ends beside the middle of the picture, towards -x, metres: between pixels.
 const BAR: [f64; 2] = [9.0 * PIXEL, 19.0 * PIXEL];
 
-/// A long bar along z over a floor, from above.
-fn bar() -> SeenImages {
+/// A long bar along z over a floor, from above. `tilt`: how far the floor goes down below the bar, radians.
+fn bar(tilt: f64) -> SeenImages {
     from_above([PIXELS; 2], HALF, true, &|x, _| {
         let over = (-BAR[1]..-BAR[0]).contains(&x);
-        Some((if over { HIGH } else { 0.0 }, UP))
+        Some(if over { (HIGH, UP) } else { (x * tilt.tan(), Vec3::new(-tilt.sin(), tilt.cos(), 0.0)) })
     })
 }
 
@@ -54,7 +54,7 @@ fn under(direction: Vec3, aside: f64) -> Option<[f64; 2]> {
 type Visibility<'a> = &'a dyn Fn(Vec3, f64) -> Option<f64>;
 
 /// Mean direction and openness of eight pixels in the middle of the picture: Listing 3.1 with midpoints instead of samples.
-fn expected(visibility: Visibility<'_>) -> (Vec3, f64) {
+fn expected(tilt: f64, visibility: Visibility<'_>) -> (Vec3, f64) {
     let (mut sum, mut total) = (Vec3::default(), 0.0);
     for column in 0..8 {
         let aside = (f64::from(column) - 3.5) * PIXEL;
@@ -62,7 +62,12 @@ fn expected(visibility: Visibility<'_>) -> (Vec3, f64) {
         for (i, j) in (0..96).flat_map(|i| (0..192).map(move |j| (i, j))) {
             let (height, turn) = ((f64::from(i) + 0.5) / 96.0, TAU * (f64::from(j) + 0.5) / 192.0);
             let across = (1.0 - height * height).sqrt();
-            let direction = Vec3::new(across * turn.cos(), height, across * turn.sin());
+            let (aslant, (sine, cosine)) = (across * turn.cos(), tilt.sin_cos());
+            let direction = Vec3::new(
+                aslant * cosine - height * sine,
+                aslant * sine + height * cosine,
+                across * turn.sin(),
+            );
             let free = visibility(direction, aside);
             direction_sum = direction_sum + direction * free.unwrap_or(1.0);
             visible += free.unwrap_or(1.0);
@@ -75,10 +80,21 @@ fn expected(visibility: Visibility<'_>) -> (Vec3, f64) {
     (sum * (1.0 / total), total / 8.0)
 }
 
-/// Finds the same on the GPU, and holds it.
+/// Finds the same on the GPU over a level floor, and holds it.
 fn hold(what: &str, sampling: Sampling, settings: &OcclusionSettings, visibility: Visibility<'_>) -> f64 {
-    let (mean, open) = bar().bent_at(sharp(sampling), settings, Vec3::default());
-    let wanted = expected(visibility);
+    hold_tilted(0.0, what, sampling, settings, visibility)
+}
+
+/// The same over a floor that is tilted.
+fn hold_tilted(
+    tilt: f64,
+    what: &str,
+    sampling: Sampling,
+    settings: &OcclusionSettings,
+    visibility: Visibility<'_>,
+) -> f64 {
+    let (mean, open) = bar(tilt).bent_at(sharp(sampling), settings, Vec3::default());
+    let wanted = expected(tilt, visibility);
     println!("{what}: open {open:.3} of {:.3}, mean {mean:.3?} of {:.3?}", wanted.1, wanted.0);
     assert!((open - wanted.1).abs() < 0.015, "{what}: {open} instead of {}", wanted.1);
     assert!((mean - wanted.0).length() < 0.015, "{what}: {mean:?} instead of {:?}", wanted.0);
@@ -144,7 +160,7 @@ fn a_plate_further_up_than_its_thickness_leaves_the_normal_and_says_nothing() {
         }
     };
     // The place from which the bar begins 0.2 m aside.
-    let images = bar();
+    let images = bar(0.0);
     let near = |thickness: f64| {
         let place = Vec3::new(0.2 - BAR[0], 0.0, 0.0);
         let all = images.bent(sharp(Sampling::Hemisphere), &one_step(thickness));
@@ -186,28 +202,72 @@ fn a_horizon_rises_as_the_fall_off_of_what_is_seen_allows() {
     hold("horizon", Sampling::Horizon, &settings, &visibility);
 }
 
+/// Blocked between the bar's front edge and its far edge, `thickness` below its top, as far as it is in the picture. `tilt`: of the floor.
+fn behind_bits(radius: f64, thickness: f64, tilt: f64) -> impl Fn(Vec3, f64) -> Option<f64> {
+    move |direction, aside| {
+        let Some([first, last]) = under(direction, aside) else { return Some(1.0) };
+        let shown = HALF * direction.x.hypot(direction.z) / direction.z.abs().max(1e-9);
+        let (first, last) = (first + 0.5 * PIXEL, (last - 0.5 * PIXEL).min(shown));
+        let high = HIGH - aside * tilt.tan();
+        let angle = direction.x.hypot(direction.z).atan2(direction.y);
+        // An occluder counts for as many pixels of the pattern as its fall-off says.
+        let parts = (0..32).map(|part| {
+            let limit = radius * (1.0 - ((f64::from(part) + 0.5) / 32.0).sqrt()).sqrt();
+            let last = last.min((limit * limit - high * high).max(0.0).sqrt());
+            let hit = first < last && angle > first.atan2(high) && angle < last.atan2(high - thickness);
+            f64::from(u8::from(!hit)) / 32.0
+        });
+        Some(parts.sum())
+    }
+}
+
 #[test]
 fn light_passes_under_a_thin_bar_and_not_under_a_thick_one() {
     let _turn = gpu::turn();
+    let bits = |thickness: f64| OcclusionSettings { samples: 8, steps: 64, ..settings(thickness) };
     let open = [0.1, 0.3, 0.6].map(|thickness| {
-        let visibility = |direction: Vec3, aside: f64| {
-            let Some([first, last]) = under(direction, aside) else { return Some(1.0) };
-            // An occluder counts for as many pixels of the pattern as its fall-off says.
-            let parts = (0..32).map(|part| {
-                let limit = 1.5 * (1.0 - ((f64::from(part) + 0.5) / 32.0).sqrt()).sqrt();
-                let limit = (limit * limit - HIGH * HIGH).max(0.0).sqrt();
-                let (first, last) = (first + 0.5 * PIXEL, (last - 0.5 * PIXEL).min(limit));
-                let angle = direction.x.hypot(direction.z).atan2(direction.y);
-                let behind = last.atan2(HIGH - thickness).min(FRAC_PI_2);
-                let hit = first < last && angle > first.atan2(HIGH) && angle < behind;
-                f64::from(u8::from(!hit)) / 32.0
-            });
-            Some(parts.sum())
-        };
-        let settings = OcclusionSettings { samples: 8, steps: 64, ..settings(thickness) };
-        hold(&format!("bits, {thickness} m thick"), Sampling::Bitmask, &settings, &visibility)
+        let what = format!("bits, {thickness} m thick");
+        hold(&what, Sampling::Bitmask, &bits(thickness), &behind_bits(1.5, thickness, 0.0))
     });
     assert!(open[0] > open[1] + 0.02 && open[1] > open[2] + 0.02, "{open:?}");
+    // Thickness is along the view, whichever way the floor faces.
+    let tilt = 0.6;
+    hold_tilted(tilt, "tilted floor", Sampling::Bitmask, &bits(0.3), &behind_bits(1.5, 0.3, tilt));
+    // One slice a pixel, for every pixel of the pattern another.
+    let one = OcclusionSettings { samples: 1, steps: 192, radius: 9.0, ..bits(0.6) };
+    hold("one slice", Sampling::Bitmask, &one, &behind_bits(9.0, 0.6, 0.0));
+}
+
+#[test]
+fn steps_are_taken_at_every_part_of_them() {
+    let _turn = gpu::turn();
+    // One step, at the square of a part that differs between pixels: only some of them meet the bar.
+    let (radius, thickness) = (2.4, 0.6);
+    let one = OcclusionSettings { radius: radius as f32, samples: 12, steps: 1, ..settings(thickness) };
+    for sampling in [Sampling::Hemisphere, Sampling::Horizon, Sampling::Bitmask] {
+        let visibility = |direction: Vec3, aside: f64| {
+            let Some([first, last]) = under(direction, aside) else { return Some(1.0) };
+            let across = direction.x.hypot(direction.z);
+            let blocked = (0..64).map(|part| {
+                let reach = radius * ((f64::from(part) + 0.5) / 64.0).powi(2);
+                let along = if sampling == Sampling::Hemisphere { reach * across } else { reach };
+                let weight = fall_off(along.hypot(HIGH), radius);
+                if along < first || along > last || along * direction.z.abs() > HALF * across {
+                    return 0.0;
+                }
+                let angle = across.atan2(direction.y);
+                match sampling {
+                    Sampling::Horizon => f64::from(u8::from(direction.y < weight * HIGH / along.hypot(HIGH))),
+                    // Below the bar's top, or from its front edge down.
+                    Sampling::Hemisphere if reach * direction.y < HIGH => weight,
+                    Sampling::Bitmask if angle > along.atan2(HIGH) => weight,
+                    _ => 0.0,
+                }
+            });
+            Some(1.0 - blocked.sum::<f64>() / 64.0)
+        };
+        hold(&format!("{sampling:?}, one step"), sampling, &one, &visibility);
+    }
 }
 
 #[test]
@@ -269,9 +329,24 @@ fn pixels_without_a_surface_are_open_and_hide_nothing() {
 }
 
 #[test]
+fn every_pixel_has_its_own_surface() {
+    let _turn = gpu::turn();
+    // Every second pixel has one, at the border as well.
+    let size = [9, 7];
+    let odd = |x: f64, z: f64| (((x + 4.5).floor() + (z + 3.5).floor()) as i32) % 2 == 1;
+    let images = from_above(size, 3.5, true, &|x, z| odd(x, z).then_some((0.0, UP)));
+    for sampling in ALL {
+        let all = images.bent(sharp(sampling), &settings(0.1));
+        for (pixel, (mean, _)) in all.into_iter().enumerate() {
+            assert_eq!(mean == Vec3::default(), images.surfaces[pixel].is_none(), "{sampling:?} {pixel}");
+        }
+    }
+}
+
+#[test]
 fn normals_count_by_direction_and_are_towards_the_viewer_where_there_are_none() {
     let _turn = gpu::turn();
-    let images = bar();
+    let images = bar(0.0);
     let settings = OcclusionSettings { samples: 4, ..settings(0.3) };
     for sampling in ALL {
         let right = images.bent(sharp(sampling), &settings);
@@ -291,7 +366,7 @@ fn normals_count_by_direction_and_are_towards_the_viewer_where_there_are_none() 
 #[test]
 fn patterns_repeat_over_their_square_and_frames_change_them() {
     let _turn = gpu::turn();
-    let images = bar();
+    let images = bar(0.0);
     // Beside the bar all rows see the same, but by other directions.
     let rows = |side: u32, frame: u32, sampling| {
         let settings = OcclusionSettings { side, frame, samples: 2, ..settings(0.3) };

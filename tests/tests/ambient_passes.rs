@@ -41,15 +41,27 @@ fn blur(axis: usize, taps: u32, reach: f64) -> BentBlur {
 /// Pixels from above, of 1 cm.
 fn floors(size: [u32; 2], reversed: bool, pixels: &[Floor]) -> SeenImages {
     let [width, height] = size.map(f64::from);
-    from_above(size, 0.005 * height, reversed, &|x, z| {
+    let images = from_above(size, 0.005 * height, reversed, &|x, z| {
         let [column, row] = [x / 0.01 + 0.5 * width, z / 0.01 + 0.5 * height];
         pixels[row as usize * size[0] as usize + column as usize]
-    })
+    });
+    // Where nothing is seen there may be normals all the same.
+    let normals: Vec<f32> = pixels
+        .iter()
+        .flat_map(|pixel| [normal(*pixel).to_array(), [0.0; 3]].concat().into_iter().take(4))
+        .map(|part| part as f32)
+        .collect();
+    images.normals.write(gpu(), &normals).unwrap();
+    images
 }
 
-/// Numbers that halves hold exactly, four a pixel.
+/// Directions and openness that halves hold exactly, four numbers a pixel. Directions are short enough to stay in the unit sphere about any
+/// of the normals.
 fn values(random: &mut Random, pixels: usize) -> Vec<f32> {
-    (0..4 * pixels).map(|_| (64.0 * random.unit()).floor() as f32 / 64.0).collect()
+    let mut part = || (64.0 * random.unit()).floor() as f32 / 64.0;
+    (0..pixels)
+        .flat_map(|_| [0.5 * part() - 0.25, 0.5 * part() - 0.25, 0.5 * part() - 0.25, part()])
+        .collect()
 }
 
 /// Steps between floors and what pixels of two of them count to each other, of a reach of 0.4 m.
@@ -80,7 +92,7 @@ fn counts(here: Floor, there: Floor) -> f64 {
 }
 
 fn normal(floor: Floor) -> Vec3 {
-    floor.map_or(Vec3::default(), |(_, normal)| normal)
+    floor.map_or(UP, |(_, normal)| normal)
 }
 
 /// Direction and openness of a pixel of a picture.
@@ -191,13 +203,18 @@ fn halving_takes_the_nearest_and_the_farthest_in_turn_on_their_planes() {
                     1 => Vec3::new(1.0, 0.07, 0.0),
                     _ => Vec3::new(random.between(-1.0, 1.0), 1.0, random.between(-1.0, 1.0)),
                 };
-                // Some so near the ends of the view that their planes leave it.
-                let height = random.between(-3.99, 3.99).clamp(-3.95, 3.95);
-                (random.unit() > 0.1).then(|| (height + random.between(-0.04, 0.04), normal.normalised()))
+                // Some so near the far plane that their planes leave the view.
+                let height = if random.below(3) == 0 { -3.99 } else { random.between(-3.9, 3.9) };
+                (random.unit() > 0.2).then(|| (height + random.between(-0.009, 0.0), normal.normalised()))
             })
             .collect();
         let images = floors(size, reversed, &floor);
         let far = images.reference.far_depth;
+        // Depths that are not finite are those of the far plane.
+        let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, far as f32];
+        let depths = images.depths.iter().zip(&floor).enumerate();
+        let depths = depths.map(|(index, (depth, floor))| floor.map_or(broken[index % 4], |_| *depth));
+        images.depth.write(gpu(), &depths.collect::<Vec<_>>()).unwrap();
         let ([width, _], depths, normals) = halved(&images);
         for (index, (found, found_normal)) in depths.iter().zip(normals.chunks_exact(4)).enumerate() {
             let [x, y] = [index % width as usize, index / width as usize];

@@ -70,7 +70,9 @@ fn blur_bent(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef PLAIN
     let whole = mean.xyz;
 #else
-    let whole = mean.xyz + 0.5 * normal;
+    let turned = mean.xyz + 0.5 * normal;
+    // Of few directions, a difference to another normal may lead out of the unit sphere.
+    let whole = turned / max(length(turned), 1.0);
 #endif
     textureStore(blurred, id.xy, select(vec4<f32>(whole, mean.w), vec4<f32>(0.0, 0.0, 0.0, 1.0), nothing));
 #endif
