@@ -215,6 +215,9 @@ fn numbers_and_names_that_cannot_be_meant_are_refused() {
         ("--radius 0", ["--radius", "above 0"]),
         ("--radius -2", ["--radius", "above 0"]),
         ("--radius nan", ["--radius", "finite"]),
+        ("--thickness 0", ["--thickness", "above 0"]),
+        ("--thickness 2e15", ["--thickness", "1e15"]),
+        ("--frame -1", ["--frame", "-1"]),
         ("--method reference --samples 0", ["--samples", "1 to 65536"]),
         ("--method reference --samples 65537", ["--samples", "1 to 65536"]),
         ("--method reference --radius 0", ["--radius", "above 0"]),
@@ -229,9 +232,17 @@ fn numbers_and_names_that_cannot_be_meant_are_refused() {
 #[test]
 fn flags_that_do_not_go_together_are_refused() {
     let at = folder();
-    for flag in
-        ["--sampler disc", "--steps 3", "--interleave 4", "--half", "--no-blur", "--plain-blur", "--printed"]
-    {
+    for flag in [
+        "--sampler disc",
+        "--steps 3",
+        "--thickness 2",
+        "--frame 3",
+        "--interleave 4",
+        "--half",
+        "--no-blur",
+        "--plain-blur",
+        "--printed",
+    ] {
         let name = flag.split(' ').next().unwrap();
         refused(at.path(), &format!("--method reference {flag}"), 2, &[name, "traces rays"]);
     }
@@ -242,6 +253,8 @@ fn flags_that_do_not_go_together_are_refused() {
     for (flags, parts) in [
         ("--no-blur --plain-blur", ["--no-blur", "--plain-blur"]),
         ("--method ao --printed", ["--printed", "ao"]),
+        ("--sampler disc --thickness 1", ["--thickness", "bitmask"]),
+        ("--sampler horizon --thickness 1", ["--thickness", "bitmask"]),
         ("--show angles --method normals", ["--show", "exact-cones"]),
         ("--height 2", ["--height", "orthographic"]),
         ("--camera orthographic --fov 30", ["--fov", "--height"]),

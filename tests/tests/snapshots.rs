@@ -37,28 +37,12 @@ use airlight::transmittance::{
 use airlight::{Stage, Texture};
 use glam::Vec3;
 use gpu::{TestScene, gpu, shaders};
-use snapshot::{Buffer, Picture, Tolerance, assert_buffer, assert_picture};
+use snapshot::{Buffer, Picture, Tolerance, assert_buffer, assert_picture, buffer, tolerance};
 use std::path::Path;
 
 const PICTURE: [u32; 2] = [64, 48];
 const MAP: [u32; 2] = [48, 32];
 const SHADOW: [u32; 2] = [48, 48];
-
-fn tolerance(absolute: f64, relative: f64, outliers: f64) -> Tolerance {
-    Tolerance { absolute, relative, outliers }
-}
-
-/// Layer `layer` of a texture, the first `keep` channels of each texel.
-fn buffer(texture: &Texture, layer: usize, keep: usize, tolerance: Tolerance) -> Buffer {
-    let values = texture.read(gpu()).unwrap();
-    let [columns, rows, layers] = texture.size().map(|side| side as usize);
-    let channels = values.len() / (columns * rows * layers);
-    let values = values[layer * columns * rows * channels..][..columns * rows * channels]
-        .chunks_exact(channels)
-        .flat_map(|texel| texel[..keep].to_vec())
-        .collect();
-    Buffer { adapter: gpu().description(), shape: [columns, rows, keep], tolerance, values }
-}
 
 fn check(scene_name: &str, scene: &TestScene) {
     let _turn = gpu::turn();

@@ -29,7 +29,7 @@ pub struct ShadePass {
 }
 
 impl ShadePass {
-    /// Composes the pass. `printed`: brightness as the thesis prints it, too dark.
+    /// Composes the pass. `printed`: brightness as the thesis prints it, too dark in even light where little is open.
     ///
     /// # Errors
     /// [`AmbientError::Pass`].

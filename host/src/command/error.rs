@@ -268,9 +268,8 @@ impl From<AmbientError> for CommandError {
     fn from(error: AmbientError) -> Self {
         use AmbientError as E;
         let flag = match &error {
-            E::Setting(OutOfRange { name: "radius of occlusion" | "thickness of occluders", .. }) => {
-                "--radius"
-            }
+            E::Setting(OutOfRange { name: "radius of occlusion", .. }) => "--radius",
+            E::Setting(OutOfRange { name: "thickness of occluders", .. }) => "--thickness",
             E::Setting(OutOfRange { name: "number of directions", .. }) => "--samples",
             E::Setting(OutOfRange { name: "number of steps", .. }) => "--steps",
             E::Setting(OutOfRange { name: "side of the sampling pattern", .. }) => "--interleave",

@@ -11,6 +11,8 @@
 //! snapshot was blessed on another adapter or driver: delete the snapshots to move them.
 #![allow(dead_code, clippy::unwrap_used)]
 
+use crate::gpu::gpu;
+use airlight::Texture;
 use airlight_tests::error;
 use insta::{Comparator, Settings, Snapshot, internals::SnapshotContents};
 use std::fmt::Write;
@@ -296,6 +298,23 @@ fn bound(name: &str, adapter: &str, similarity: f64, check: impl FnOnce()) {
     settings.set_description(adapter);
     settings.set_comparator(Box::new(Tolerant { mode, similarity }));
     settings.bind(check);
+}
+
+/// A tolerance of these parts.
+pub fn tolerance(absolute: f64, relative: f64, outliers: f64) -> Tolerance {
+    Tolerance { absolute, relative, outliers }
+}
+
+/// Layer `layer` of a texture, the first `keep` channels of each texel.
+pub fn buffer(texture: &Texture, layer: usize, keep: usize, tolerance: Tolerance) -> Buffer {
+    let values = texture.read(gpu()).unwrap();
+    let [columns, rows, layers] = texture.size().map(|side| side as usize);
+    let channels = values.len() / (columns * rows * layers);
+    let values = values[layer * columns * rows * channels..][..columns * rows * channels]
+        .chunks_exact(channels)
+        .flat_map(|texel| texel[..keep].to_vec())
+        .collect();
+    Buffer { adapter: gpu().description(), shape: [columns, rows, keep], tolerance, values }
 }
 
 /// Compares a buffer with its snapshot.

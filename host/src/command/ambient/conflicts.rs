@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! What cannot be meant with `airlight ambient`, before any file is read.
 
-use super::flags::{MOST_TRACED, MethodSpelling, Options, ShowSpelling};
+use super::flags::{MOST_TRACED, MethodSpelling, Options, SamplerSpelling, ShowSpelling};
 use crate::ambient::OcclusionSettings;
 use crate::command::CommandError;
 
@@ -49,6 +49,8 @@ fn traced(flags: &Options) -> Vec<Rule> {
     let given = [
         (flags.sampler.is_some(), "--sampler"),
         (flags.steps.is_some(), "--steps"),
+        (flags.thickness.is_some(), "--thickness"),
+        (flags.frame.is_some(), "--frame"),
         (flags.interleave.is_some(), "--interleave"),
         (flags.half, "--half"),
         (flags.no_blur, "--no-blur"),
@@ -71,13 +73,19 @@ fn unlit(flags: &Options) -> Vec<Rule> {
     given.into_iter().map(|(given, flag)| (flags.numbers() && given, flag, problem)).collect()
 }
 
-fn shown(flags: &Options) -> [Rule; 2] {
+fn shown(flags: &Options) -> [Rule; 3] {
+    let flat = matches!(flags.sampler, Some(SamplerSpelling::Disc | SamplerSpelling::Horizon));
     let coneless = matches!(flags.method, MethodSpelling::Ao | MethodSpelling::Normals);
     [
         (
             flags.printed && flags.method == MethodSpelling::Ao,
             "--printed",
             "the brightness of --method ao is as printed: leave it out",
+        ),
+        (
+            flags.thickness.is_some() && flat,
+            "--thickness",
+            "--sampler disc and horizon know none: leave it out, or give --sampler hemisphere or bitmask",
         ),
         (
             flags.show == ShowSpelling::Angles && coneless,

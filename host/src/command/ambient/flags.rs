@@ -97,6 +97,12 @@ pub struct Options {
     /// the meshes; with --method reference any distance, and all of them fully].
     #[arg(long, value_name = "METRES", value_parser = parse::number, allow_hyphen_values = true)]
     pub radius: Option<f32>,
+    /// How thick what is seen is taken to be, metres, to 1e15; with --sampler hemisphere and bitmask [default: the radius].
+    #[arg(long, value_name = "METRES", value_parser = parse::number, allow_hyphen_values = true)]
+    pub thickness: Option<f32>,
+    /// Frame of a pattern that changes with time, for pictures to be averaged [default: 0, a static one].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub frame: Option<u32>,
     /// Side of the square of pixels that have different directions, and of the blur over it, 1 to 16 [default: 8].
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub interleave: Option<u32>,
@@ -109,7 +115,7 @@ pub struct Options {
     /// Blurs bent normals themselves rather than how they differ from normals.
     #[arg(long, conflicts_with = "no_blur")]
     pub plain_blur: bool,
-    /// Brightness as the thesis prints it, too dark.
+    /// Brightness as the thesis prints it: darker where little is open.
     #[arg(long)]
     pub printed: bool,
     /// Reduces the environment to 32x16 texels first, which cones can follow.
@@ -137,6 +143,8 @@ impl Options {
             samples: self.samples.unwrap_or(usual.samples),
             steps: self.steps.unwrap_or(usual.steps),
             side: self.interleave.unwrap_or(usual.side),
+            thickness: self.thickness.unwrap_or(usual.thickness),
+            frame: self.frame.unwrap_or(usual.frame),
             ..usual
         }
     }

@@ -3,7 +3,7 @@
 
 use super::shown::{Rays, Seen};
 use crate::core::Camera;
-use crate::data::{Environment, Mesh};
+use crate::data::{Environment, Mesh, Random};
 use airlight_tests::linear::Vec3 as Exact;
 use airlight_tests::parallel::rows;
 use airlight_tests::reference::ambient::{self, Pattern, Reach, Scene, Statistics, Triangle, outgoing};
@@ -21,8 +21,21 @@ pub fn trace(
     radius: Option<f32>,
     stride: u32,
 ) -> Vec<Option<Seen>> {
+    let traced = trace_under(mesh, [light], camera, rays, radius, stride);
+    traced.into_iter().map(|seen| seen.map(|[seen]| seen)).collect()
+}
+
+/// Like [`trace`], under several lights at once.
+pub fn trace_under<const LIGHTS: usize>(
+    mesh: &Mesh,
+    lights: [Option<&Environment>; LIGHTS],
+    camera: &Camera,
+    rays: u32,
+    radius: Option<f32>,
+    stride: u32,
+) -> Vec<Option<[Seen; LIGHTS]>> {
     let scene = scene_of(mesh);
-    let light = light.map(light_of);
+    let lights = lights.map(|light| light.map(light_of));
     let pattern = Pattern::new(rays);
     let views = Rays::of(camera);
     // Pixels stride/2, stride/2 + stride, ...
@@ -32,8 +45,8 @@ pub fn trace(
         let [origin, direction] = views.at(at[0], at[1]).map(exact);
         let hit = scene.hit(origin, direction)?;
         let (place, normal) = (scene.position(&hit), scene.normal(&hit, direction));
-        // Fractions of the golden section.
-        let turn = TAU * (f64::from(y * width + x) * 0.618_033_988_749_894_9).fract();
+        // By chance, for what is even over the picture shows as stripes.
+        let turn = TAU * f64::from(Random::new(u64::from(y * width + x)).unit());
         let samples = match radius {
             None => ambient::trace(&scene, place, normal, &pattern, turn, Reach::UNLIMITED),
             Some(radius) => {
@@ -46,12 +59,12 @@ pub fn trace(
         let weighted = corners.iter().zip(hit.barycentric);
         let albedo: Vec3 =
             weighted.map(|(corner, weight)| mesh.albedos[*corner as usize] * weight as f32).sum();
-        let radiance = light.as_ref().map_or([0.0; 3], |light| outgoing(light, normal, &samples));
-        Some(Seen {
-            radiance: albedo * Vec3::from(radiance.map(|value| value as f32)),
-            open: statistics.open as f32,
-            mean: Vec3::from(statistics.bent_normal().to_array().map(|value| value as f32)),
-        })
+        let mean = Vec3::from(statistics.bent_normal().to_array().map(|value| value as f32));
+        Some(lights.each_ref().map(|light| {
+            let radiance = light.as_ref().map_or([0.0; 3], |light| outgoing(light, normal, &samples));
+            let radiance = albedo * Vec3::from(radiance.map(|value| value as f32));
+            Seen { radiance, open: statistics.open as f32, mean }
+        }))
     };
     let row = |y: usize| (0..width).map(|x| pixel(x, y as u32)).collect::<Vec<_>>();
     rows(height as usize, row).into_iter().flatten().collect()

@@ -26,7 +26,7 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
     let mut album = Album::new(&studio.out, folder, title, about)?;
     let ground = easel.ground()?;
     let found = ground.seen(&ground.bent(BENT, &settings)?, None)?;
-    let traced = easel.traced(None, Some(settings.radius));
+    let traced = easel.traced_within(settings.radius);
     let colour = |seen: &Seen| (seen.mean.normalize_or_zero() * 0.5 + 0.5).to_array();
     album.add_tile("traced.png", "Traced", studio.size, &easel.numbers(&traced, colour))?;
     album.add_tile("screen.png", "On the screen", studio.size, &easel.numbers(&found, colour))?;

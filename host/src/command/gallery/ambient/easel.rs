@@ -15,7 +15,7 @@ use crate::{StageError, Texture};
 use std::path::Path;
 
 /// Rays a pixel of traced pictures.
-const RAYS: u32 = 96;
+const RAYS: u32 = 192;
 
 /// Bent normals as the thesis has them.
 pub const BENT: BentForm = BentForm {
@@ -78,9 +78,16 @@ impl<'a> Easel<'a> {
         OcclusionSettings { thickness: self.scene.thickness, ..OcclusionSettings::new(self.scene.radius) }
     }
 
-    /// Rays instead. `radius`: metres up to which occluders count, less the farther they are; without it all of them.
-    pub fn traced(&self, light: Option<&Environment>, radius: Option<f32>) -> Found {
-        traced::trace(&self.scene.mesh, light, &self.camera, RAYS, radius, 1)
+    /// By rays instead, which all occluders block, in the light of each backdrop.
+    pub fn traced<const COUNT: usize>(&self, backdrops: &[Backdrop; COUNT]) -> [Found; COUNT] {
+        let lights = backdrops.each_ref().map(|backdrop| Some(&backdrop.low_passed));
+        let all = traced::trace_under(&self.scene.mesh, lights, &self.camera, RAYS, None, 1);
+        std::array::from_fn(|light| all.iter().map(|seen| seen.map(|seen| seen[light])).collect())
+    }
+
+    /// Numbers by rays. `radius`: metres up to which occluders count, less the farther they are.
+    pub fn traced_within(&self, radius: f32) -> Found {
+        traced::trace(&self.scene.mesh, None, &self.camera, RAYS, Some(radius), 1)
     }
 
     /// Lit surfaces before a map: pixels to look at.

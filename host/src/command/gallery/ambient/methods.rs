@@ -34,9 +34,9 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
     let mut album = Album::new(&studio.out, folder, title, about)?;
     let ground = easel.ground()?;
     let bent = ground.bent(BENT, &settings)?;
-    for map in MAPS {
-        let backdrop = Backdrop::new(studio, map)?;
-        let truth = easel.traced(Some(&backdrop.low_passed), None);
+    let backdrops = [Backdrop::new(studio, MAPS[0])?, Backdrop::new(studio, MAPS[1])?];
+    let truths = easel.traced(&backdrops);
+    for (map, (backdrop, truth)) in MAPS.into_iter().zip(backdrops.iter().zip(truths)) {
         for (method, file, name) in METHODS {
             let [exact, found] =
                 [false, true].map(|printed| ground.seen(&bent, Some((&backdrop.cones, method, printed))));
@@ -50,7 +50,7 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
                 format!("{file}_{map}.png"),
                 caption,
                 studio.size,
-                &easel.lit(&found, &backdrop)?,
+                &easel.lit(&found, backdrop)?,
             )?;
         }
         let caption = format!("Traced, {map}");
@@ -58,7 +58,7 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
             format!("reference_{map}.png"),
             caption,
             studio.size,
-            &easel.lit(&truth, &backdrop)?,
+            &easel.lit(&truth, backdrop)?,
         )?;
     }
     album.finish_with_sheet(
