@@ -341,7 +341,7 @@ fn upsampling_is_bilinear_over_what_is_of_the_same_surface() {
             let (images, small) = (floors(size, true, &floor), floors(half, true, &half_floor));
             let given = values(&mut random, half_pixels);
             let found = upsampled(&images, &small, &given, reach);
-            for pixel in 0..pixels {
+            for (pixel, own) in floor.iter().copied().enumerate() {
                 let [x, y] = [pixel % size[0] as usize, pixel / size[0] as usize];
                 let of = |weight: &dyn Fn(Floor) -> f64| {
                     let around = four_around(x, y, half_sides).map(|(share, other)| {
@@ -349,13 +349,13 @@ fn upsampling_is_bilinear_over_what_is_of_the_same_surface() {
                         (weight, bent(&given, other), normal(half_floor[other]))
                     });
                     let some = around.iter().any(|part| part.0 > 0.0);
-                    some.then(|| mean(&around, 0.5, normal(floor[pixel])))
+                    some.then(|| mean(&around, 0.5, normal(own)))
                 };
-                let own = of(&|there| counts(floor[pixel], there));
+                let alike = of(&|there| counts(own, there));
                 // Where none is of the surface, all that are seen count; where none is seen it is open.
                 let any = || of(&|there| f64::from(u8::from(there.is_some())));
-                let wanted = match floor[pixel] {
-                    Some((_, normal)) => own.or_else(any).unwrap_or((normal * 0.5, 1.0)),
+                let wanted = match own {
+                    Some((_, normal)) => alike.or_else(any).unwrap_or((normal * 0.5, 1.0)),
                     None => (Vec3::default(), 1.0),
                 };
                 // What is not of the surface counts by a ten thousandth.
