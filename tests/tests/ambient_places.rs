@@ -136,6 +136,28 @@ fn normals_are_made_unit_and_replaced_where_there_are_none() {
 }
 
 #[test]
+fn bent_normals_are_unit_along_the_mean_and_the_normal_where_there_is_none() {
+    let _turn = gpu::turn();
+    let probe = Probe {
+        head: "#import airlight::ambient::bent_cone::bent_normal",
+        body: "let bent = bent_normal(vec3<f32>(input(0u), input(1u), input(2u)), vec3<f32>(0.0, 0.6, 0.8));
+               output(0u, bent.x); output(1u, bent.y); output(2u, bent.z);",
+        inputs: 3,
+        outputs: 3,
+    };
+    let cases: [([f32; 3], [f32; 3]); 4] = [
+        ([0.3, 0.0, 0.4], [0.6, 0.0, 0.8]),
+        ([0.0, 0.99, 0.0], [0.0, 1.0, 0.0]),
+        ([-0.01, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        ([0.0; 3], [0.0, 0.6, 0.8]),
+    ];
+    let found = probe.run(&cases.map(|case| case.0).concat());
+    for (row, (given, wanted)) in found.chunks_exact(3).zip(cases) {
+        assert!((triple(row) - Vec3::from(wanted)).length() < 1e-6, "{given:?}: {row:?}");
+    }
+}
+
+#[test]
 fn occluders_count_less_with_distance_and_by_their_elevation() {
     let _turn = gpu::turn();
     let probe = Probe {
