@@ -12,34 +12,33 @@ mod gpu;
 mod standing;
 
 use airlight::ambient::Method;
-use standing::{Standing, error, low_passed, settings};
+use airlight::scenes::ambient_scenes;
+use standing::{Standing, error, low_passed};
 
 const SIZE: [u32; 2] = [112, 84];
 
 #[test]
-fn bent_normals_and_cones_are_nearer_to_the_truth_than_occlusion() {
+fn cones_are_nearer_to_the_truth_than_normals_and_these_than_occlusion() {
     let _turn = gpu::turn();
-    for (name, turn) in [("bunny.obj", 0.3), ("suzanne.obj", 0.3)] {
-        let standing = Standing::new(name, turn, SIZE);
+    for scene in ambient_scenes().unwrap() {
+        let (name, standing) = (scene.name, Standing::new(&scene, SIZE));
         for file in ["forest.exr", "sunset.exr"] {
             let (map, host_map) = low_passed(file);
             let light = cones::lit(&host_map, 33, false);
             let truth = standing.truth(&map);
-            let of =
-                |method, printed| error(&standing.drawn(&light.cones, method, printed, &settings()), &truth);
+            let of = |method, printed| {
+                error(&standing.drawn(&light.cones, method, printed, &standing.settings), &truth)
+            };
             let occlusion = of(Method::Occlusion, false);
             println!("{name} {file}: occlusion {occlusion:.4}");
-            for method in [Method::Normals, Method::Cones, Method::ExactCones] {
-                let errors = [false, true].map(|printed| of(method, printed));
-                println!(
-                    "{name} {file}: {method:?} {:.4}, brightness as printed {:.4}",
-                    errors[0], errors[1]
-                );
-                assert!(
-                    errors.iter().all(|error| *error < 0.9 * occlusion),
-                    "{method:?}: {errors:?} {occlusion}"
-                );
-            }
+            // Brightness as the thesis prints it, and the exact share of even light.
+            let [[normals, cones, exact], shared] = [true, false]
+                .map(|printed| [Method::Normals, Method::Cones, Method::ExactCones].map(|m| of(m, printed)));
+            println!("{name} {file}: normals {normals:.4}, cones {cones:.4}, exact cones {exact:.4}");
+            println!("{name} {file}: with the exact share of even light {shared:.4?}");
+            assert!(cones < normals && exact < normals, "{cones} {exact} {normals}");
+            assert!(normals < 0.9 * occlusion, "{normals} {occlusion}");
+            assert!(shared.iter().all(|error| *error < occlusion), "{shared:?} {occlusion}");
         }
     }
 }

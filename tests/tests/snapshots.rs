@@ -34,7 +34,7 @@ use airlight::stylize::{
 use airlight::transmittance::{
     Form as MapForm, MapSettings, ParticleBuffer, Precision, Splat, SplatFixed, TransmittanceMap, Voxels,
 };
-use airlight::{Stage, Texture};
+use airlight::Stage;
 use glam::Vec3;
 use gpu::{TestScene, gpu, shaders};
 use snapshot::{Buffer, Picture, Tolerance, assert_buffer, assert_picture, buffer, tolerance};

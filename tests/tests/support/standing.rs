@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Models on a floor in the light of real environment maps, traced and lit by bent cones.
+//! Scenes of the gallery in the light of real environment maps, traced and lit by bent cones.
 //!
 //! Maps are low-passed to 32x16 texels, for cones cannot follow what is finer.
 #![allow(dead_code, clippy::unwrap_used)]
@@ -10,18 +10,20 @@ use airlight::Texture;
 use airlight::ambient::{
     BentForm, BentPasses, Blurring, Method, OcclusionSettings, Sampling, ShadePass, SurfaceImages,
 };
-use airlight::core::{Camera, DepthRange, Geometry, GeometryPass, MeshBuffers, PerspectiveView};
-use airlight::data::{Environment, Mesh, load_mesh, plane};
+use airlight::core::{Camera, Geometry, GeometryPass, MeshBuffers};
+use airlight::data::{Environment, Mesh};
+use airlight::scenes::AmbientScene;
 use airlight_tests::reference::ambient::{
     Angle, Brightness, Environment as ReferenceEnvironment, Pixel, Reach, Scene, Settings, Surface, Triangle,
     picture, surfaces,
 };
-use glam::{Mat4, Vec2, Vec3};
-use std::path::Path;
+use glam::Vec3;
 
-/// A white model on a white floor, as the rasteriser and the rays see it.
+/// A scene without colours, as the rasteriser and the rays see it.
 pub struct Standing {
     size: [u32; 2],
+    /// Eight directions of three steps as far as the scene needs.
+    pub settings: OcclusionSettings,
     camera: Camera,
     pub geometry: Geometry,
     scene: Scene,
@@ -29,37 +31,21 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// The mesh of a file, as large as a ball of radius 1. `turn`: radians about the vertical.
-    pub fn new(name: &str, turn: f32, size: [u32; 2]) -> Self {
-        let model =
-            load_mesh(Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/assets").join(name)).unwrap();
-        let bounds = model.bounds().unwrap();
-        let scale = 1.0 / bounds.radius();
-        let down = Vec3::new(bounds.center().x, bounds.min.y, bounds.center().z);
-        let mut mesh = model.transformed(
-            Mat4::from_rotation_y(turn)
-                * Mat4::from_scale(Vec3::splat(scale))
-                * Mat4::from_translation(-down),
-        );
-        mesh.append(&plane(Vec2::splat(8.0), 1));
-        let view = PerspectiveView {
-            eye: Vec3::new(0.4, 1.7, 3.0),
-            target: Vec3::new(0.0, 0.55, 0.0),
-            field_of_view: 40.0,
-            near: 0.1,
-            far: 20.0,
-            depth: DepthRange::Reversed,
-        };
-        let scene = traced(&mesh);
-        let reference = reference_camera(&view, size);
+    /// A scene of the gallery, white.
+    pub fn new(scene: &AmbientScene, size: [u32; 2]) -> Self {
+        let (mesh, view) = (&scene.mesh, &scene.view);
+        let settings =
+            OcclusionSettings { thickness: scene.thickness, ..OcclusionSettings::new(scene.radius) };
+        let scene = traced(mesh);
+        let reference = reference_camera(view, size);
         let points = surfaces(&scene, &reference, size[0] as usize, size[1] as usize);
-        let camera = Camera::new(&view.into(), size).unwrap();
-        let mesh = mesh.with_albedo(Vec3::ONE);
+        let camera = Camera::new(&(*view).into(), size).unwrap();
+        let mesh = mesh.clone().with_albedo(Vec3::ONE);
         let geometry = GeometryPass::new(gpu(), shaders())
             .unwrap()
             .draw(gpu(), &camera, &[MeshBuffers::new(gpu(), &mesh)])
             .unwrap();
-        Self { size, camera, geometry, scene, points }
+        Self { size, settings, camera, geometry, scene, points }
     }
 
     /// As the passes take it.
@@ -103,11 +89,6 @@ impl Standing {
         gpu().submit(encoder).unwrap();
         picture.read(gpu()).unwrap()
     }
-}
-
-/// Eight directions of three steps, for models of this size.
-pub fn settings() -> OcclusionSettings {
-    OcclusionSettings { thickness: 1.0, ..OcclusionSettings::new(1.5) }
 }
 
 /// A real map of 32x16 texels, for rays and for the passes.
