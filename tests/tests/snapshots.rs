@@ -16,6 +16,7 @@ mod snapshot;
 #[path = "support/snapshot_checks.rs"]
 mod snapshot_checks;
 
+use airlight::Stage;
 use airlight::core::{DepthRange, Light, Reading, Tonemap, VolumeTexture};
 use airlight::data::{burst, cloud, sphere, torus_field};
 use airlight::painterly::{Orientation, PainterlyStyle};
@@ -34,7 +35,6 @@ use airlight::stylize::{
 use airlight::transmittance::{
     Form as MapForm, MapSettings, ParticleBuffer, Precision, Splat, SplatFixed, TransmittanceMap, Voxels,
 };
-use airlight::Stage;
 use glam::Vec3;
 use gpu::{TestScene, gpu, shaders};
 use snapshot::{Buffer, Picture, Tolerance, assert_buffer, assert_picture, buffer, tolerance};

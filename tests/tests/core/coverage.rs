@@ -51,6 +51,8 @@ const COVERED: [(&str, &[&str]); 19] = [
             "far_plane_distance",
         ],
     ),
+    ("arc_cosine", &["arc_cosine"]),
+    ("tangent_frame", &["tangent_frame"]),
     ("color", &["luminance", "tone_curve", "srgb_from_linear"]),
     ("finite", &["is_finite", "finite_or", "finite_or_rgb"]),
     (

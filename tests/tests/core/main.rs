@@ -12,6 +12,7 @@ mod gpu;
 mod probing;
 
 mod coverage;
+mod directions;
 mod jitter;
 mod scans;
 mod textures;

@@ -2,11 +2,12 @@
 //! Screen-space directional occlusion, the competitor of bent cones: each open direction's light is looked up.
 
 use crate::ambient::{AmbientError, BentBlur, OcclusionSettings, SurfaceImages};
-use crate::data::Environment;
+use crate::data::{Environment, EnvironmentLight};
 use crate::gpu::GpuError;
-use crate::pass::{Pass, PassError};
-use crate::{Gpu, Shaders, Texture};
+use crate::pass::{Pass, PassError, Resource};
+use crate::{Buffer, Gpu, Shaders, Texture};
 use airlight_validate::Definitions;
+use std::f32::consts::PI;
 use wgpu::TextureFormat::{Rgba16Float, Rgba32Float};
 
 /// How directions are spread over the hemisphere.
@@ -16,10 +17,14 @@ pub enum Spread {
     Cosine,
     /// Evenly over the solid angle, weighted with the cosine.
     Even,
+    /// As the environment is bright: lights drawn from it.
+    Lights,
 }
 
 /// The passes of the competitor.
 pub struct Ssdo {
+    /// The binding of the environment.
+    environment: &'static str,
     gather: Pass,
     blur: Pass,
     shade: Pass,
@@ -31,40 +36,45 @@ impl Ssdo {
     /// # Errors
     /// [`PassError`].
     pub fn new(gpu: &Gpu, shaders: &Shaders, spread: Spread) -> Result<Self, PassError> {
-        let pass = |name: &str, flag: &str, set: bool| {
-            Pass::compute_with(gpu, shaders, name, &Definitions::new().flags(&[(flag, set)]))
+        let pass = |name: &str, flags: &[(&str, bool)]| {
+            Pass::compute_with(gpu, shaders, name, &Definitions::new().flags(flags))
         };
+        let spreads = [("UNIFORM", spread == Spread::Even), ("LIGHTS", spread == Spread::Lights)];
         Ok(Self {
-            gather: pass("baselines/ssdo", "UNIFORM", spread == Spread::Even)?,
-            blur: pass("baselines/ssdo_blur", "SHADED", false)?,
-            shade: pass("baselines/ssdo_blur", "SHADED", true)?,
+            environment: if spread == Spread::Lights { "lights" } else { "radiance" },
+            gather: pass("baselines/ssdo", &spreads)?,
+            blur: pass("baselines/ssdo_blur", &[("SHADED", false)])?,
+            shade: pass("baselines/ssdo_blur", &[("SHADED", true)])?,
         })
     }
 
     /// Records the picture, blurred over the sampling pattern: rgba16float, linear RGB radiance, alpha 1 where a surface is seen.
-    /// `albedos`: linear RGB, 0..1; `radiance`: of [`radiance_texture`].
+    /// `albedos`: linear RGB, 0..1; `environment`: of [`radiance_texture`], or of [`lights_buffer`] with [`Spread::Lights`].
     ///
     /// # Errors
     /// [`AmbientError::Setting`], [`AmbientError::Pass`].
-    pub fn record(
+    pub fn record<'a>(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         seen: SurfaceImages<'_>,
         settings: &OcclusionSettings,
         albedos: &Texture,
-        radiance: &Texture,
+        environment: impl Into<Resource<'a>>,
     ) -> Result<Texture, AmbientError> {
         settings.check()?;
         let [width, height, _] = seen.depth.size();
         let size = [width, height];
-        let uniform = crate::Buffer::uniform(gpu, settings);
+        let uniform = Buffer::uniform(gpu, settings);
         let image = || Texture::storage(gpu, size, Rgba16Float);
         let [gathered, blurred, picture] = [image(), image(), image()];
-        let resources =
-            [("settings", (&uniform).into()), ("radiance", radiance.into()), ("light", (&gathered).into())];
+        let resources = [
+            ("settings", (&uniform).into()),
+            (self.environment, environment.into()),
+            ("light", (&gathered).into()),
+        ];
         seen.dispatch(gpu, encoder, &self.gather, size, &resources)?;
-        let [along, across] = [0, 1].map(|axis| crate::Buffer::uniform(gpu, &BentBlur::over(settings, axis)));
+        let [along, across] = [0, 1].map(|axis| Buffer::uniform(gpu, &BentBlur::over(settings, axis)));
         let resources =
             [("blur", (&along).into()), ("light", (&gathered).into()), ("blurred", (&blurred).into())];
         seen.dispatch(gpu, encoder, &self.blur, size, &resources)?;
@@ -90,4 +100,15 @@ pub fn radiance_texture(gpu: &Gpu, environment: &Environment) -> Result<Texture,
         environment.texels().iter().flat_map(|texel| [texel.x, texel.y, texel.z, 1.0]).collect();
     texture.write(gpu, &texels)?;
     Ok(texture)
+}
+
+/// Lights drawn from a map that is not black, as many as `settings` has directions in all pixels of its pattern.
+pub fn lights_buffer(gpu: &Gpu, environment: &Environment, settings: &OcclusionSettings) -> Buffer {
+    let lights = environment.sample_lights(settings.samples * settings.side * settings.side, 1);
+    let row = |light: &EnvironmentLight| {
+        let [direction, light] = [light.direction, light.irradiance / PI].map(|part| part.extend(0.0));
+        [direction.to_array(), light.to_array()]
+    };
+    let rows: Vec<[f32; 4]> = lights.iter().flat_map(row).collect();
+    Buffer::of_floats(gpu, rows.as_flattened())
 }

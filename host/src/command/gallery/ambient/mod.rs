@@ -7,6 +7,7 @@ mod easel;
 mod failure;
 mod methods;
 mod samplers;
+mod sampling;
 
 use super::album::Section;
 use super::studio::Studio;
@@ -14,7 +15,8 @@ use crate::command::CommandError;
 use crate::scenes::{AmbientScene, ambient_scenes};
 
 /// Pictures of this system, as in `--only ambient/NAME`.
-pub const NAMES: [&str; 7] = ["bunny", "suzanne", "room", "samplers", "angles", "blur", "failure"];
+pub const NAMES: [&str; 8] =
+    ["bunny", "suzanne", "room", "samplers", "angles", "sampling", "blur", "failure"];
 
 /// The section of a name; of the last one for a name that is not among [`NAMES`].
 pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, CommandError> {
@@ -22,6 +24,7 @@ pub fn section(studio: &Studio, folder: &str, name: &str) -> Result<Section, Com
         "bunny" | "suzanne" | "room" => methods::section(studio, folder, scene(name)?),
         "samplers" => samplers::section(studio, folder, scene("bunny")?),
         "angles" => angles::section(studio, folder, scene("suzanne")?),
+        "sampling" => sampling::section(studio, folder, scene("suzanne")?),
         "blur" => blur::section(studio, folder),
         _ => failure::section(studio, folder),
     }
