@@ -113,9 +113,9 @@ fn every_method_has_the_radiance_of_its_formula() {
                 }
                 assert_eq!(texel[3], 1.0);
                 drawn += 1;
-                for channel in 0..3 {
+                for (channel, value) in texel[..3].iter().enumerate() {
                     let expected = radiance(pixel, method, printed, channel);
-                    worst = worst.max((f64::from(texel[channel]) - expected).abs() / expected.max(1.0));
+                    worst = worst.max((f64::from(*value) - expected).abs() / expected.max(1.0));
                 }
             }
             println!("{method:?} printed {printed}: {worst:.1e} of radiance");

@@ -2,7 +2,7 @@
 //! Which test holds which function of the core modules.
 
 /// Every function of the core modules, each with a test here or in one of `core_*.rs`.
-const COVERED: [(&str, &[&str]); 19] = [
+const COVERED: [(&str, &[&str]); 21] = [
     // In tests/tests/painterly.rs, by what rays find and see.
     ("transfer_function", &["classified"]),
     // In tests/tests/core_cosine.rs.
