@@ -159,9 +159,7 @@ impl ConeLight {
         let [width, height] = environment.size();
         check_shape(width, height)?;
         let limit = gpu.limits.max_texture_dimension_2d;
-        if width > limit {
-            return Err(ConeLightError::TooLarge { width, height, limit });
-        }
+        check_limit(width, height, limit)?;
         let usage = wgpu::TextureUsages::TEXTURE_BINDING;
         let texture = Texture::new(gpu, [width, height], Rgba32Float, usage);
         let texels: Vec<f32> =
@@ -208,9 +206,28 @@ impl ConeLight {
     }
 }
 
+fn check_limit(width: u32, height: u32, limit: u32) -> Result<(), ConeLightError> {
+    if width > limit {
+        return Err(ConeLightError::TooLarge { width, height, limit });
+    }
+    Ok(())
+}
+
 fn check_shape(width: u32, height: u32) -> Result<(), ConeLightError> {
     if height == 0 || width != 2 * height {
         return Err(ConeLightError::Shape { width, height });
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_as_large_as_textures_can_be_are_taken_and_no_larger() {
+        assert!(check_limit(8192, 4096, 8192).is_ok());
+        let error = check_limit(8194, 4097, 8192).map_err(|error| error.to_string());
+        assert!(error.is_err_and(|text| text.contains("8194x4097") && text.contains("8192 texels")));
+    }
 }

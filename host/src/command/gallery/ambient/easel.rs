@@ -78,10 +78,9 @@ impl<'a> Easel<'a> {
         OcclusionSettings { thickness: self.scene.thickness, ..OcclusionSettings::new(self.scene.radius) }
     }
 
-    /// By rays instead, which all occluders block, in the light of each backdrop.
-    pub fn traced<const COUNT: usize>(&self, backdrops: &[Backdrop; COUNT]) -> [Found; COUNT] {
-        let lights = backdrops.each_ref().map(|backdrop| Some(&backdrop.low_passed));
-        let all = traced::trace_under(&self.scene.mesh, lights, &self.camera, RAYS, None, 1);
+    /// By rays instead, which all occluders block, in the light of each map.
+    pub fn traced<const COUNT: usize>(&self, maps: [&Environment; COUNT]) -> [Found; COUNT] {
+        let all = traced::trace_under(&self.scene.mesh, maps.map(Some), &self.camera, RAYS, None, 1);
         std::array::from_fn(|light| all.iter().map(|seen| seen.map(|seen| seen[light])).collect())
     }
 

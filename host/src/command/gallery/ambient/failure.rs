@@ -35,13 +35,13 @@ pub fn section(studio: &Studio, folder: &str) -> Result<Section, CommandError> {
         .to_owned();
     let mut album = Album::new(&studio.out, folder, title, about)?;
     let ground = easel.ground()?;
-    let backdrops = [Backdrop::new(studio, "sunset")?];
+    let backdrop = Backdrop::new(studio, "sunset")?;
     let bent = ground.bent(BENT, &easel.settings())?;
-    let ([truth], [backdrop]) = (easel.traced(&backdrops), &backdrops);
+    let [truth] = easel.traced([&backdrop.low_passed]);
     let found = ground.seen(&bent, Some((&backdrop.cones, Method::Cones, true)))?;
     let colour = |seen: &Seen| (seen.mean.normalize_or_zero() * 0.5 + 0.5).to_array();
-    album.add_tile("cones.png", "Bent cones", studio.size, &easel.lit(&found, backdrop)?)?;
-    album.add_tile("reference.png", "Traced", studio.size, &easel.lit(&truth, backdrop)?)?;
+    album.add_tile("cones.png", "Bent cones", studio.size, &easel.lit(&found, &backdrop)?)?;
+    album.add_tile("reference.png", "Traced", studio.size, &easel.lit(&truth, &backdrop)?)?;
     album.add_tile("bent.png", "Bent normals of the screen", studio.size, &easel.numbers(&found, colour))?;
     album.add_tile("traced_bent.png", "Traced bent normals", studio.size, &easel.numbers(&truth, colour))?;
     album.fact("bent cones", format!("error {:.4}", error(&found, &truth)));

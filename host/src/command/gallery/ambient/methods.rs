@@ -4,7 +4,7 @@
 use super::super::album::{Album, Section};
 use super::super::studio::Studio;
 use super::easel::{BENT, Backdrop, Easel, error};
-use crate::ambient::Method;
+use crate::ambient::{ConeLight, ConeLightForm, Method};
 use crate::command::CommandError;
 use crate::scenes::AmbientScene;
 
@@ -35,8 +35,12 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
     let ground = easel.ground()?;
     let bent = ground.bent(BENT, &settings)?;
     let backdrops = [Backdrop::new(studio, MAPS[0])?, Backdrop::new(studio, MAPS[1])?];
-    let truths = easel.traced(&backdrops);
-    for (map, (backdrop, truth)) in MAPS.into_iter().zip(backdrops.iter().zip(truths)) {
+    let [a, b] = &backdrops;
+    let [a, b, whole_a, whole_b] = easel.traced([&a.low_passed, &b.low_passed, &a.map, &b.map]);
+    for ((map, backdrop), [truth, whole]) in
+        MAPS.into_iter().zip(&backdrops).zip([[a, whole_a], [b, whole_b]])
+    {
+        let cones = ConeLight::new(&studio.gpu, &studio.shaders, &backdrop.map, ConeLightForm::default())?;
         for (method, file, name) in METHODS {
             let [exact, found] =
                 [false, true].map(|printed| ground.seen(&bent, Some((&backdrop.cones, method, printed))));
@@ -46,6 +50,9 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
             if method != Method::Occlusion {
                 album.fact(format!("{caption}, exact share of even light"), format!("error {exact:.4}"));
             }
+            let found_whole = ground.seen(&bent, Some((&cones, method, true)))?;
+            let caption_whole = format!("{caption}, whole map");
+            album.fact(caption_whole, format!("error {:.4}", error(&found_whole, &whole)));
             album.add_tile(
                 format!("{file}_{map}.png"),
                 caption,

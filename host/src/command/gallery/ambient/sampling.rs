@@ -21,8 +21,8 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
     let mut album = Album::new(&studio.out, folder, title, about)?;
     let gpu = &studio.gpu;
     let ground = easel.ground()?;
-    let backdrops = [Backdrop::new(studio, "forest")?];
-    let ([truth], [backdrop]) = (easel.traced(&backdrops), &backdrops);
+    let backdrop = Backdrop::new(studio, "forest")?;
+    let [truth] = easel.traced([&backdrop.low_passed]);
     let of = |samples| OcclusionSettings { samples, ..easel.settings() };
     let shaders = with_baselines(&studio.shaders);
     let map = radiance_texture(gpu, &backdrop.low_passed)?;
@@ -58,8 +58,8 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
     pictures.push((cones, "cones.png", "Bent cones, 8 directions"));
     for (found, file, caption) in pictures {
         album.fact(caption, format!("error {:.4}", error(&found, &truth)));
-        album.add_tile(file, caption, studio.size, &easel.lit(&found, backdrop)?)?;
+        album.add_tile(file, caption, studio.size, &easel.lit(&found, &backdrop)?)?;
     }
-    album.add_tile("reference.png", "Traced", studio.size, &easel.lit(&truth, backdrop)?)?;
+    album.add_tile("reference.png", "Traced", studio.size, &easel.lit(&truth, &backdrop)?)?;
     album.finish_with_sheet(2, "Importance sampling and directional occlusion; bent cones and rays")
 }
