@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 #define_import_path airlight::ambient::bent_blur
-// summary: How much a neighbour counts in a blur that stops at edges.
+// summary: A blur that stops at edges, of how mean directions differ from half their normals: what neighbours count, and the way back.
 // source: thesis 3.4; Laine et al., "Incremental instant radiosity" (2007).
 // note: A neighbour counts by how far it lies from the tangent plane and how alike its normal is, smoothly down to 0.
 
@@ -27,4 +27,11 @@ fn edge_weight(blur: BentBlur, place: vec3<f32>, normal: vec3<f32>, other: vec3<
     let unlike = 0.5 * dot(normal - other_normal, normal - other_normal);
     let alike = clamp(1.0 - unlike / max(1.0 - blur.least_cosine, 1e-6), 0.0, 1.0);
     return near * alike;
+}
+
+/// The mean direction that differs from half the normal by this. Of few directions, a difference to another normal may lead out of the
+/// unit sphere: it goes no further.
+fn mean_from_difference(difference: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let mean = difference + 0.5 * normal;
+    return mean / max(length(mean), 1.0);
 }

@@ -14,7 +14,7 @@
 // binding blurred: out, like `bent`.
 
 #import airlight::core::camera::Camera
-#import airlight::ambient::bent_blur::{BentBlur, edge_weight}
+#import airlight::ambient::bent_blur::{BentBlur, edge_weight, mean_from_difference}
 #import airlight::ambient::seen_surface::{seen_surface, seen_normal}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -70,9 +70,7 @@ fn blur_bent(@builtin(global_invocation_id) id: vec3<u32>) {
 #ifdef PLAIN
     let whole = mean.xyz;
 #else
-    let turned = mean.xyz + 0.5 * normal;
-    // Of few directions, a difference to another normal may lead out of the unit sphere.
-    let whole = turned / max(length(turned), 1.0);
+    let whole = mean_from_difference(mean.xyz, normal);
 #endif
     textureStore(blurred, id.xy, select(vec4<f32>(whole, mean.w), vec4<f32>(0.0, 0.0, 0.0, 1.0), nothing));
 #endif

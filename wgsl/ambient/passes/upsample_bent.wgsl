@@ -14,7 +14,7 @@
 // binding whole: out, rgba16float, like `bent`.
 
 #import airlight::core::camera::Camera
-#import airlight::ambient::bent_blur::{BentBlur, edge_weight}
+#import airlight::ambient::bent_blur::{BentBlur, edge_weight, mean_from_difference}
 #import airlight::ambient::seen_surface::{seen_surface, seen_normal}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -59,9 +59,7 @@ fn upsample_bent(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let nothing = weights <= 0.0;
     let mean = sum / select(weights, 1.0, nothing);
-    // Of few directions, a difference to another normal may lead out of the unit sphere.
-    let turned = mean.xyz + 0.5 * normal;
-    let found = vec4<f32>(turned / max(length(turned), 1.0), mean.w);
+    let found = vec4<f32>(mean_from_difference(mean.xyz, normal), mean.w);
     // What no halved pixel sees is open.
     let open = select(vec3<f32>(0.0), 0.5 * normal, here.known);
     textureStore(whole, id.xy, select(found, vec4<f32>(open, 1.0), nothing));

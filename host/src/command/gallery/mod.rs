@@ -209,8 +209,10 @@ mod tests {
         assert_eq!(splatting.len(), splatting::NAMES.len());
         let inverse = choose(Some("inverse")).unwrap();
         assert_eq!(inverse.len(), inverse::NAMES.len());
+        let ambient = choose(Some("ambient")).unwrap();
+        assert_eq!(ambient.len(), ambient::NAMES.len());
         assert_eq!(
-            [&SCATTERING[..], &stylize, &transmittance, &painterly, &splatting, &inverse].concat(),
+            [&SCATTERING[..], &stylize, &transmittance, &painterly, &splatting, &inverse, &ambient].concat(),
             all()
         );
         for subject in all() {
@@ -223,13 +225,14 @@ mod tests {
         assert_eq!(choose(Some("transmittance/plume")).unwrap(), [Subject::Transmittance("plume")]);
         assert_eq!(choose(Some("painterly/stent")).unwrap(), [Subject::Painterly("stent")]);
         assert_eq!(choose(Some("inverse/logos")).unwrap(), [Subject::Inverse("logos")]);
+        assert_eq!(choose(Some("ambient/room")).unwrap(), [Subject::Ambient("room")]);
         assert_eq!(choose(Some("scattering/halo")).unwrap(), [Subject::Scene("halo")]);
     }
 
     #[test]
     fn what_is_not_there_is_refused_with_what_is() {
         for wrong in [
-            "ambient",
+            "vendoring",
             "scattering/nothing",
             "stylize/lights",
             "transmittance/halo",
