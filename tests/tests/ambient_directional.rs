@@ -17,8 +17,8 @@ mod seen;
 mod standing;
 
 use airlight::Texture;
-use airlight::ambient::{Method, OcclusionSettings, SurfaceImages};
-use airlight::command::ssdo::{Spread, Ssdo, radiance_texture};
+use airlight::ambient::{Method, OcclusionSettings, SurfaceImages, environment_texture};
+use airlight::command::ssdo::{Spread, Ssdo};
 use airlight::data::Environment;
 use airlight::scenes::ambient_scenes;
 use airlight_tests::error;
@@ -41,7 +41,7 @@ fn gathered(
     spread: Spread,
 ) -> Vec<f32> {
     let ssdo = Ssdo::new(gpu(), competitors::shaders(), spread).unwrap();
-    let radiance = radiance_texture(gpu(), map).unwrap();
+    let radiance = environment_texture(gpu(), map).unwrap();
     let mut encoder = gpu().encoder();
     let picture = ssdo.record(gpu(), &mut encoder, seen, settings, albedos, &radiance).unwrap();
     gpu().submit(encoder).unwrap();

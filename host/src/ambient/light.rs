@@ -160,11 +160,7 @@ impl ConeLight {
         check_shape(width, height)?;
         let limit = gpu.limits.max_texture_dimension_2d;
         check_limit(width, height, limit)?;
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
-        let texture = Texture::new(gpu, [width, height], Rgba32Float, usage);
-        let texels: Vec<f32> =
-            environment.texels().iter().flat_map(|texel| [texel.x, texel.y, texel.z, 1.0]).collect();
-        texture.write(gpu, &texels)?;
+        let texture = environment_texture(gpu, environment)?;
         let bound = self.bind(gpu, &texture)?;
         let mut encoder = gpu.encoder();
         self.record(&mut encoder, &bound);
@@ -204,6 +200,19 @@ impl ConeLight {
         let [side, _, _] = self.cones.size();
         self.convolve.dispatch(encoder, &bound.convolution, [side * side, 1, 1]);
     }
+}
+
+/// An environment map on the device: rgba32float, linear RGB, no larger than textures may be.
+///
+/// # Errors
+/// [`GpuError`].
+pub fn environment_texture(gpu: &Gpu, environment: &Environment) -> Result<Texture, GpuError> {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+    let texture = Texture::new(gpu, environment.size(), Rgba32Float, usage);
+    let texels: Vec<f32> =
+        environment.texels().iter().flat_map(|texel| [texel.x, texel.y, texel.z, 1.0]).collect();
+    texture.write(gpu, &texels)?;
+    Ok(texture)
 }
 
 fn check_limit(width: u32, height: u32, limit: u32) -> Result<(), ConeLightError> {

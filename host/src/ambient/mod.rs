@@ -11,7 +11,7 @@ mod settings;
 mod shade;
 
 pub use error::AmbientError;
-pub use light::{CONE_LAYERS, ConeLight, ConeLightBound, ConeLightError, ConeLightForm};
+pub use light::{CONE_LAYERS, ConeLight, ConeLightBound, ConeLightError, ConeLightForm, environment_texture};
 pub use occlusion::{BentForm, BentPasses, Blurring, Sampling, SurfaceImages};
 pub use settings::{BentBlur, OcclusionSettings};
 pub use shade::{Method, ShadePass};

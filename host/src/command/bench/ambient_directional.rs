@@ -4,11 +4,11 @@
 
 use super::ambient::{RADIUS, SAMPLES, SYSTEM, Scene};
 use super::baselines::with_baselines;
-use super::ssdo::{Spread, Ssdo, radiance_texture};
+use super::ssdo::{Spread, Ssdo};
 use super::{Quality, Row, figure, interleaved, ratio, time};
 use crate::ambient::{
     AmbientError, BentForm, BentPasses, Blurring, ConeLight, ConeLightForm, Method, OcclusionSettings,
-    Sampling, ShadePass,
+    Sampling, ShadePass, environment_texture,
 };
 use crate::command::CommandError;
 use crate::command::ambient::traced::trace;
@@ -53,7 +53,7 @@ pub fn rows(gpu: &Gpu, shaders: &Shaders, scene: &Scene) -> Result<Vec<Row>, Com
         let light = environment(Path::new(map))?.resized(LOW_PASS);
         let cones =
             ConeLight::new(gpu, shaders, &light, ConeLightForm::default()).map_err(CommandError::failure)?;
-        let radiance = radiance_texture(gpu, &light)?;
+        let radiance = environment_texture(gpu, &light)?;
         let truth: Colours = trace(&scene.mesh, Some(&light), &scene.camera, RAYS, Some(RADIUS), STRIDE)
             .iter()
             .map(|seen| seen.as_ref().map(|seen| seen.radiance.to_array()))

@@ -3,12 +3,11 @@
 
 use crate::ambient::{AmbientError, BentBlur, OcclusionSettings, SurfaceImages};
 use crate::data::{Environment, EnvironmentLight};
-use crate::gpu::GpuError;
 use crate::pass::{Pass, PassError, Resource};
 use crate::{Buffer, Gpu, Shaders, Texture};
 use airlight_validate::Definitions;
 use std::f32::consts::PI;
-use wgpu::TextureFormat::{Rgba16Float, Rgba32Float};
+use wgpu::TextureFormat::Rgba16Float;
 
 /// How directions are spread over the hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +48,7 @@ impl Ssdo {
     }
 
     /// Records the picture, blurred over the sampling pattern: rgba16float, linear RGB radiance, alpha 1 where a surface is seen.
-    /// `albedos`: linear RGB, 0..1; `environment`: of [`radiance_texture`], or of [`lights_buffer`] with [`Spread::Lights`].
+    /// `albedos`: linear RGB, 0..1; `environment`: of [`environment_texture`](crate::ambient::environment_texture), or of [`lights_buffer`] with [`Spread::Lights`].
     ///
     /// # Errors
     /// [`AmbientError::Setting`], [`AmbientError::Pass`].
@@ -87,19 +86,6 @@ impl Ssdo {
         seen.dispatch(gpu, encoder, &self.shade, size, &resources)?;
         Ok(picture)
     }
-}
-
-/// An environment map on the device.
-///
-/// # Errors
-/// [`GpuError`].
-pub fn radiance_texture(gpu: &Gpu, environment: &Environment) -> Result<Texture, GpuError> {
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING;
-    let texture = Texture::new(gpu, environment.size(), Rgba32Float, usage);
-    let texels: Vec<f32> =
-        environment.texels().iter().flat_map(|texel| [texel.x, texel.y, texel.z, 1.0]).collect();
-    texture.write(gpu, &texels)?;
-    Ok(texture)
 }
 
 /// Lights drawn from a map that is not black, as many as `settings` has directions in all pixels of its pattern.

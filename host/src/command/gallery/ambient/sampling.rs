@@ -4,10 +4,10 @@
 use super::super::album::{Album, Section};
 use super::super::studio::Studio;
 use super::easel::{BENT, Backdrop, Easel, error};
-use crate::ambient::{Method, OcclusionSettings};
+use crate::ambient::{Method, OcclusionSettings, environment_texture};
 use crate::command::CommandError;
 use crate::command::bench::baselines::with_baselines;
-use crate::command::bench::ssdo::{Spread, Ssdo, lights_buffer, radiance_texture};
+use crate::command::bench::ssdo::{Spread, Ssdo, lights_buffer};
 use crate::pass::Resource;
 use crate::scenes::AmbientScene;
 
@@ -25,7 +25,7 @@ pub fn section(studio: &Studio, folder: &str, scene: AmbientScene) -> Result<Sec
     let [truth] = easel.traced([&backdrop.low_passed]);
     let of = |samples| OcclusionSettings { samples, ..easel.settings() };
     let shaders = with_baselines(&studio.shaders);
-    let map = radiance_texture(gpu, &backdrop.low_passed)?;
+    let map = environment_texture(gpu, &backdrop.low_passed)?;
     let lights = lights_buffer(gpu, &backdrop.low_passed, &of(32));
     let looked_up: [(Spread, u32, Resource<'_>, &str, &str); 2] = [
         (
