@@ -18,7 +18,7 @@ mod standing;
 
 use airlight::Texture;
 use airlight::ambient::{Method, OcclusionSettings, SurfaceImages, environment_texture};
-use airlight::command::ssdo::{Spread, Ssdo};
+use airlight::command::ssdo::{Spread, Ssdo, lights_buffer};
 use airlight::data::Environment;
 use airlight::scenes::ambient_scenes;
 use airlight_tests::error;
@@ -41,9 +41,15 @@ fn gathered(
     spread: Spread,
 ) -> Vec<f32> {
     let ssdo = Ssdo::new(gpu(), competitors::shaders(), spread).unwrap();
-    let radiance = environment_texture(gpu(), map).unwrap();
     let mut encoder = gpu().encoder();
-    let picture = ssdo.record(gpu(), &mut encoder, seen, settings, albedos, &radiance).unwrap();
+    let picture = if spread == Spread::Lights {
+        let lights = lights_buffer(gpu(), map, settings);
+        ssdo.record(gpu(), &mut encoder, seen, settings, albedos, &lights)
+    } else {
+        let radiance = environment_texture(gpu(), map).unwrap();
+        ssdo.record(gpu(), &mut encoder, seen, settings, albedos, &radiance)
+    }
+    .unwrap();
     gpu().submit(encoder).unwrap();
     picture.read(gpu()).unwrap()
 }
@@ -94,7 +100,7 @@ fn linear_light_on_what_is_open_has_its_closed_form() {
     let open = OcclusionSettings { bias: 1.0, ..OcclusionSettings::new(0.5) };
     for (name, camera) in cameras(Vec3::new(1.0, 2.0, 2.5), Vec3::default(), 1.2) {
         let images = seen::seen(camera, [96, 96], &ball);
-        for spread in [Spread::Cosine, Spread::Even] {
+        for spread in [Spread::Cosine, Spread::Even, Spread::Lights] {
             let error = |settings| {
                 let (mut worst, mut squares, mut count) = (0.0_f64, 0.0_f64, 0.0_f64);
                 let pixels = lit_by_linear_light(&images, &settings, spread);
@@ -119,7 +125,9 @@ fn linear_light_on_what_is_open_has_its_closed_form() {
             println!(
                 "{name} {spread:?}: 256 directions off by {worst:.4} at most, 8 by {unblurred:.4}, 8 of 8x8 pixels by {few:.4}"
             );
-            assert!(worst < 0.02 && few < 0.02 && few < unblurred, "{worst} {few} {unblurred}");
+            // Half of the lights are below the horizon, and none knows the cosine: more noise.
+            let most = if spread == Spread::Lights { 0.05 } else { 0.02 };
+            assert!(worst < 0.02 && few < most && few < unblurred, "{worst} {few} {unblurred}");
         }
     }
 }

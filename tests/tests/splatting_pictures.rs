@@ -10,7 +10,7 @@ mod gpu;
 #[path = "support/sheets.rs"]
 mod sheets;
 
-use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView};
+use airlight::core::{Camera, DepthRange, Light, PerspectiveView};
 use airlight::data::{Volume, cloud};
 use airlight::splatting::{
     Shading, SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings, Splats, SplattingError,
@@ -18,19 +18,7 @@ use airlight::splatting::{
 };
 use glam::Vec3;
 use gpu::{gpu, shaders};
-use sheets::{colored, metres, shoot, splats};
-
-fn parallel(direction: Vec3, height: f32, side: u32) -> Camera {
-    let view = OrthographicView {
-        eye: -60.0 * direction,
-        target: Vec3::ZERO,
-        height,
-        near: 0.0,
-        far: 120.0,
-        depth: DepthRange::Forward,
-    };
-    Camera::orthographic(&view, [side; 2]).unwrap()
-}
+use sheets::{colored, metres, parallel, shoot, splats};
 
 fn perspective(eye: Vec3, size: [u32; 2]) -> Camera {
     let (target, depth) = (Vec3::ZERO, DepthRange::Reversed);

@@ -5,8 +5,8 @@ use crate::gpu::{self, gpu, shaders};
 use crate::half_planes::corners;
 use crate::lights::{lamp, sun};
 use crate::probing::f;
-use crate::sheets::{self, colored, metres, shoot, splats};
-use crate::soft::{Lit, parallel};
+use crate::sheets::{self, colored, metres, parallel, shoot, splats};
+use crate::soft::Lit;
 use airlight::core::Light;
 use airlight::data::cloud;
 use airlight::splatting::{

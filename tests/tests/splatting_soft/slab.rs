@@ -5,8 +5,8 @@ use crate::gpu::{self, gpu, shaders};
 use crate::half_planes::place_on_light;
 use crate::lights::{lamp, sun};
 use crate::probing::f;
-use crate::sheets::{colored, metres, splats};
-use crate::soft::{Lit, crossings, parallel};
+use crate::sheets::{colored, metres, parallel, splats};
+use crate::soft::{Lit, crossings};
 use airlight::splatting::{
     LightTransport, SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings, SoftPlane,
     SoftShadows,

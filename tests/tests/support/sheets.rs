@@ -3,7 +3,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{gpu, shaders};
-use airlight::core::{Transfer, TransferPoint};
+use airlight::core::{Camera, DepthRange, OrthographicView, Transfer, TransferPoint};
 use airlight::data::Volume;
 
 use airlight::splatting::{SheetFrame, SheetInputs, SheetPicture, SheetSettings, Splats};
@@ -71,4 +71,17 @@ pub fn shoot_all(inputs: SheetInputs<'_, '_>, settings: SheetSettings, frame: &S
     picture.record(gpu(), &mut encoder).unwrap();
     gpu().submit(encoder).unwrap();
     Shot { picture: picture.picture.read(gpu()).unwrap(), shadow: picture.shadow().read(gpu()).unwrap() }
+}
+
+/// A camera with parallel rays along `direction`, through the origin; `height` metres high.
+pub fn parallel(direction: Vec3, height: f32, side: u32) -> Camera {
+    let view = OrthographicView {
+        eye: -60.0 * direction,
+        target: Vec3::ZERO,
+        height,
+        near: 0.0,
+        far: 120.0,
+        depth: DepthRange::Forward,
+    };
+    Camera::orthographic(&view, [side; 2]).unwrap()
 }

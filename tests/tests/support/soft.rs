@@ -3,8 +3,8 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::gpu::{gpu, shaders};
-use crate::sheets::colored;
-use airlight::core::{Camera, DepthRange, Light, OrthographicView};
+use crate::sheets::{colored, parallel};
+use airlight::core::{Camera, Light};
 use airlight::splatting::{SheetFrame, SheetLighting, SheetNumber, Sheets, SoftPlane, SoftShadows};
 use airlight::{Buffer, Pass, Sampler, Texture};
 use airlight_tests::linear;
@@ -20,19 +20,6 @@ pub fn texel_ray(camera: &Camera, texel: [u32; 2]) -> (DVec3, DVec3) {
         point.truncate() / point.w
     });
     (near, (far - near).normalize())
-}
-
-/// A camera with parallel rays along `direction`, through the origin; `height` metres high.
-pub fn parallel(direction: Vec3, height: f32, side: u32) -> Camera {
-    let view = OrthographicView {
-        eye: -60.0 * direction,
-        target: Vec3::ZERO,
-        height,
-        near: 0.0,
-        far: 120.0,
-        depth: DepthRange::Forward,
-    };
-    Camera::orthographic(&view, [side; 2]).unwrap()
 }
 
 /// A light on sheets.
