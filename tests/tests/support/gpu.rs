@@ -26,13 +26,32 @@ use glam::{Mat4, Vec2, Vec3};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
+static GPU: OnceLock<Gpu> = OnceLock::new();
+
 /// The device of this test binary.
 pub fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
+    thread_local!(static SETTLED: Settled = const { Settled });
+    SETTLED.with(|_| ());
     GPU.get_or_init(|| match pollster::block_on(Gpu::new()) {
         Ok(gpu) => gpu,
         Err(error) => panic!("{error}"),
     })
+}
+
+/// Waits at the end of a test's thread until the driver's own thread has nothing left to do.
+///
+/// Lavapipe frees dropped pipelines on that thread and after a submission has signalled its end. The device lives in a `static`,
+/// so nothing else would wait for it, and a process that exits meanwhile crashes in the destructors of LLVM.
+struct Settled;
+
+impl Drop for Settled {
+    fn drop(&mut self) {
+        let Some(gpu) = GPU.get() else { return };
+        // The first frees what was dropped before, the second signals after that.
+        gpu.queue.submit([]);
+        gpu.queue.submit([]);
+        let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    }
 }
 
 /// One test at a time: a software adapter shares the cores with the references, and both use all of them.
