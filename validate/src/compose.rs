@@ -192,7 +192,7 @@ pub(crate) fn validate(
     validator.validate(module).map_err(Box::new)
 }
 
-fn shader_definitions(definitions: &Definitions) -> HashMap<String, ShaderDefValue> {
+pub(crate) fn shader_definitions(definitions: &Definitions) -> HashMap<String, ShaderDefValue> {
     let mut all: HashMap<String, ShaderDefValue> = definitions
         .iter()
         .map(|(name, value)| {

@@ -28,6 +28,8 @@ mod names;
 mod permutations;
 mod reflect;
 mod scan;
+#[cfg(feature = "command")]
+mod threads;
 
 #[cfg(feature = "command")]
 pub mod check;

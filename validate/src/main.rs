@@ -58,6 +58,18 @@ enum Job {
         /// Folder with `<system>/<module>.wgsl`; default `wgsl` if it is here, else the built-in library.
         dir: Option<PathBuf>,
     },
+    /// Write every permutation of every pass as stand-alone WGSL to `DIR/flat`.
+    Flatten {
+        /// Folder with `<system>/<module>.wgsl`.
+        #[arg(default_value = "wgsl")]
+        dir: PathBuf,
+        /// Write nothing; fail naming the first file that is stale, missing or superfluous.
+        #[arg(long)]
+        check: bool,
+        /// Folder instead of `DIR/flat`; other `.wgsl` files in it are removed.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -68,6 +80,7 @@ fn main() -> ExitCode {
         Job::Check { dir, format, require, quiet } => command::check::run(dir, format, require, quiet),
         Job::Manifest { dir, check, out } => command::manifest::run(&dir, check, out),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
+        Job::Flatten { dir, check, out } => command::flatten::run(&dir, check, out),
     });
     let (message, code) = match done {
         Ok(Ok(code)) => return code,

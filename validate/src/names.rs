@@ -90,10 +90,29 @@ pub(crate) fn undecorate(text: &str) -> String {
     }
 }
 
+/// The item that a decorated name means, without its module; any other name as it is.
+#[cfg_attr(not(feature = "command"), allow(dead_code))]
+pub(crate) fn item_of(name: &str) -> String {
+    decode(name).map_or_else(|| name.to_owned(), |decorated| decorated.item)
+}
+
+/// Module and item that a decorated name means.
+#[cfg_attr(not(feature = "command"), allow(dead_code))]
+pub(crate) fn module_and_item(name: &str) -> Option<(String, String)> {
+    let decorated = decode(name)?;
+    Some((decorated.module?, decorated.item))
+}
+
+/// The decorated name of an item of a module, as naga_oil writes it.
+#[cfg_attr(not(feature = "command"), allow(dead_code))]
+pub(crate) fn decorate(module: &str, item: &str) -> String {
+    format!("{item}{MODULE}{}X", BASE32_NOPAD.encode(module.as_bytes()))
+}
+
 /// Gives every item of a composed module a readable name of its own: the short one where that is
 /// unambiguous, else with the module's name before it. What the pass declares keeps its name.
 pub(crate) fn make_readable(module: &mut naga::Module) {
-    let names = choose(&global_names(module));
+    let names = choose(&global_names(module), |_, _| true);
     let rename = |name: &mut Option<String>| {
         if let Some(new) = name.as_ref().and_then(|name| names.get(name)) {
             *name = Some(new.clone());
@@ -163,8 +182,8 @@ fn shorten(name: &mut Option<String>) {
     }
 }
 
-/// Readable names for the decorated ones among `names`.
-fn choose(names: &[String]) -> BTreeMap<String, String> {
+/// Readable names for the decorated ones among `names`; `may(decorated, readable)` says which are allowed.
+pub(crate) fn choose(names: &[String], may: impl Fn(&str, &str) -> bool) -> BTreeMap<String, String> {
     let mut taken: BTreeSet<String> = names.iter().filter(|name| decode(name).is_none()).cloned().collect();
     let decorated: BTreeMap<&String, Decorated> =
         names.iter().filter_map(|name| Some((name, decode(name)?))).collect();
@@ -187,7 +206,8 @@ fn choose(names: &[String]) -> BTreeMap<String, String> {
             Some(format!("{}_{plain}", module.replace("::", "_"))),
         ];
         let numbered = (2..).map(|number| Some(format!("{plain}_{number}x")));
-        let new = candidates.into_iter().chain(numbered).flatten().find(|c| !taken.contains(c));
+        let new =
+            candidates.into_iter().chain(numbered).flatten().find(|c| !taken.contains(c) && may(name, c));
         if let Some(new) = new {
             taken.insert(new.clone());
             chosen.insert(name.clone(), new);
@@ -201,10 +221,6 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn decorated(item: &str, module: &str) -> String {
-        format!("{item}{MODULE}{}X", BASE32_NOPAD.encode(module.as_bytes()))
-    }
-
     #[test]
     fn a_name_is_taken_apart() {
         // Every length of path, so that each remainder of BASE32 and codes that end in X occur.
@@ -212,7 +228,7 @@ mod tests {
             for tail in ["o", "W", "w", "x", "X"] {
                 let module =
                     format!("{}{tail}", "airlight::core::camera_of_the_picture_plane".get(..length).unwrap());
-                let name = decorated("fX", &module);
+                let name = decorate(&module, "fX");
                 let parts = decode(&name).unwrap();
                 assert_eq!(
                     parts,
@@ -229,7 +245,7 @@ mod tests {
         let target = format!("f{VIRTUAL}{}X", BASE32_NOPAD.encode(b"airlight::core::a"));
         let parts = decode(&target).unwrap();
         assert_eq!(parts, Decorated { item: "f".into(), module: None, overrides: true });
-        let full = decorated(&target, "airlight::core::b");
+        let full = decorate("airlight::core::b", &target);
         let parts = decode(&full).unwrap();
         assert_eq!(parts.item, "f");
         assert_eq!(parts.module.as_deref(), Some("airlight::core::b"));
@@ -239,14 +255,14 @@ mod tests {
     #[test]
     fn ambiguous_names_take_the_module() {
         let names = [
-            decorated("f", "airlight::core::a"),
-            decorated("f", "airlight::core::b"),
-            decorated("g", "airlight::core::a"),
-            decorated("own", "airlight::core::a"),
+            decorate("airlight::core::a", "f"),
+            decorate("airlight::core::b", "f"),
+            decorate("airlight::core::a", "g"),
+            decorate("airlight::core::a", "own"),
             "own".to_owned(),
             "main".to_owned(),
         ];
-        let chosen = choose(&names);
+        let chosen = choose(&names, |_, _| true);
         assert_eq!(chosen[&names[0]], "a_f");
         assert_eq!(chosen[&names[1]], "b_f");
         assert_eq!(chosen[&names[2]], "g");
@@ -258,8 +274,8 @@ mod tests {
 
     #[test]
     fn same_module_name_in_two_systems() {
-        let names = [decorated("f", "airlight::core::m"), decorated("f", "airlight::stylize::m")];
-        let chosen = choose(&names);
+        let names = [decorate("airlight::core::m", "f"), decorate("airlight::stylize::m", "f")];
+        let chosen = choose(&names, |_, _| true);
         assert_ne!(chosen[&names[0]], chosen[&names[1]]);
     }
 }

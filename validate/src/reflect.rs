@@ -248,7 +248,8 @@ pub fn format_name(format: StorageFormat) -> &'static str {
 }
 
 impl Reflection {
-    pub(crate) fn new(module: &Module, info: &ModuleInfo) -> Self {
+    /// Of a module and what validation found out about it.
+    pub fn new(module: &Module, info: &ModuleInfo) -> Self {
         let mut layouter = Layouter::default();
         // A validated module has a layout.
         if layouter.update(module.to_ctx()).is_err() {

@@ -16,6 +16,9 @@
 //!     })?;
 //! }
 //! ```
+//!
+//! With the feature `flat`, `FLAT` holds every permutation of every pass as one file without directives, for
+//! programs without a composer.
 
 /// An algorithm module or callback: functions, structs and constants that an engine imports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +85,50 @@ macro_rules! systems {
         }),*];
     };
 }
+
+/// A permutation of a pass as stand-alone WGSL, without directives.
+#[cfg(feature = "flat")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flat {
+    /// Name of the pass, `<system>/<pass>`.
+    pub pass: &'static str,
+    /// Name of the permutation.
+    pub permutation: &'static str,
+    /// File relative to the root of this crate, `flat/<system>/<pass>.wgsl` for the permutation `default`, else
+    /// `flat/<system>/<pass>.<permutation>.wgsl`.
+    pub file: &'static str,
+    /// The WGSL text; bindings in `@group(0)`.
+    pub source: &'static str,
+}
+
+#[cfg(feature = "flat")]
+macro_rules! flat {
+    ($($pass:literal [$($permutation:literal),*]),* $(,)?) => {
+        /// Every permutation of every pass as stand-alone WGSL, by the name of the pass; `default` first.
+        pub const FLAT: &[crate::Flat] = &[$(
+            crate::Flat {
+                pass: $pass,
+                permutation: "default",
+                file: concat!("flat/", $pass, ".wgsl"),
+                source: include_str!(concat!("../flat/", $pass, ".wgsl")),
+            },
+            $(crate::Flat {
+                pass: $pass,
+                permutation: $permutation,
+                file: concat!("flat/", $pass, ".", $permutation, ".wgsl"),
+                source: include_str!(concat!("../flat/", $pass, ".", $permutation, ".wgsl")),
+            },)*
+        )*];
+    };
+}
+#[cfg(feature = "flat")]
+pub(crate) use flat;
+
+#[cfg(feature = "flat")]
+#[path = "flat.rs"]
+mod flat_list;
+#[cfg(feature = "flat")]
+pub use flat_list::FLAT;
 
 modules! {
     core::finite [],

@@ -3,6 +3,7 @@
 
 pub(crate) mod check;
 pub(crate) mod flat;
+pub(crate) mod flatten;
 pub(crate) mod manifest;
 
 use airlight_validate::{Error, Library};
