@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// Airlight 0.1.0: ambient/upsample_bent, permutation default
+// summary: Bent normals and openness of the whole picture from those of half its size, not over edges of depth and normals.
+// source: Kopf et al., "Joint bilateral upsampling" (2007); thesis 3.4 for the difference to normals.
+// note: Dispatch over the whole picture. Of the four halved pixels around a pixel each counts by its bilinear weight and by how much it is of the
+// note: same surface; where none is, all count a little. What is interpolated is the difference to half the normal.
+// binding camera: the camera of the whole picture.
+// binding halved_camera: the camera with half the viewport.
+// binding blur: how alike pixels are; its axis and number of taps do not count.
+// binding depth: depth buffer of the whole picture, a depth format or r32float.
+// binding normals: its unit normals in the world, any float format.
+// binding halved_depth: of ambient/halve_geometry.
+// binding halved_normals: of ambient/halve_geometry.
+// binding bent: of half the size, of ambient/occlude or ambient/blur_bent.
+// binding whole: out, rgba16float, like `bent`.
+
+// ---- airlight::ambient::bent_blur ----
+// summary: A blur that stops at edges, of how mean directions differ from half their normals: what neighbours count, and the way back.
+// source: thesis 3.4; Laine et al., "Incremental instant radiosity" (2007).
+
+/// A blur along an axis. 32 bytes.
+struct BentBlur {
+    /// (1, 0) or (0, 1).
+    axis: vec2<u32>,
+    /// Pixels that are averaged, from 1 up: the side of the sampling pattern.
+    taps: u32,
+    /// Metres from the tangent plane at which a neighbour counts no more, above 0.
+    reach: f32,
+    /// Cosine between normals at which a neighbour counts no more, below 1.
+    least_cosine: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+    reserved_c: f32,
+}
+
+/// Weight 0..1 of a neighbour; 1 of a pixel itself.
+fn edge_weight(blur: BentBlur, place: vec3<f32>, normal: vec3<f32>, other: vec3<f32>, other_normal: vec3<f32>) -> f32 {
+    let away = max(abs(dot(other - place, normal)), abs(dot(other - place, other_normal)));
+    let near = clamp(1.0 - away / max(blur.reach, 1e-20), 0.0, 1.0);
+    // Of the difference of the normals, so that normals of any length are alike to themselves.
+    let unlike = 0.5 * dot(normal - other_normal, normal - other_normal);
+    let alike = clamp(1.0 - unlike / max(1.0 - blur.least_cosine, 1e-6), 0.0, 1.0);
+    return near * alike;
+}
+
+/// The mean direction that differs from half the normal by this. Of few directions, a difference to another normal may lead out of the
+/// unit sphere: it goes no further.
+fn mean_from_difference(difference: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let mean = difference + 0.5 * normal;
+    return mean / max(length(mean), 1.0);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+}
+
+// ---- airlight::core::camera ----
+// summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
+// source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
+
+/// A camera, as an engine hands it over. 160 bytes.
+struct Camera {
+    /// View-projection matrix, world to clip.
+    clip_from_world: mat4x4<f32>,
+    /// Its inverse, clip to world.
+    world_from_clip: mat4x4<f32>,
+    /// Position of the eye in the world, metres; unused by an orthographic camera.
+    eye: vec3<f32>,
+    /// Clip depth of the near plane: 0 forward, 1 reversed.
+    near_depth: f32,
+    /// Width and height of the picture in pixels.
+    viewport: vec2<f32>,
+    /// Clip depth of the far plane: 1 forward, 0 reversed.
+    far_depth: f32,
+    /// PERSPECTIVE or ORTHOGRAPHIC.
+    projection: u32,
+}
+
+/// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
+fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+// ---- airlight::ambient::seen_surface ----
+// summary: Surface points of a picture from its depth, and pixels from places.
+// source: homogeneous unprojection.
+
+/// What is seen at a pixel.
+struct SeenSurface {
+    /// Where it is in the world, metres.
+    place: vec3<f32>,
+    /// Whether there is anything.
+    known: bool,
+}
+
+/// What is seen at a pixel with this depth.
+fn seen_surface(camera: Camera, pixel: vec2<i32>, depth: f32) -> SeenSurface {
+    let found = finite_or(depth, camera.far_depth);
+    let point = camera.world_from_clip * vec4<f32>(ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5), found, 1.0);
+    let known = found != camera.far_depth && abs(point.w) > 1e-20;
+    return SeenSurface(point.xyz / select(1.0, point.w, known), known);
+}
+
+/// The unit normal that a texel holds; `otherwise` where it holds none of any length, or what is not finite.
+fn seen_normal(texel: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
+    // So that squares do not overflow.
+    let bounded = clamp(finite_or_rgb(texel, 0.0), vec3<f32>(-1e6), vec3<f32>(1e6));
+    let size = length(bounded);
+    return select(otherwise, bounded / max(size, 1e-20), size > 1e-6);
+}
+
+// ---- ambient/upsample_bent ----
+
+@group(0) @binding(0) var<uniform> camera: Camera;
+@group(0) @binding(1) var<uniform> halved_camera: Camera;
+@group(0) @binding(2) var<uniform> blur: BentBlur;
+@group(0) @binding(3) var depth: texture_2d<f32>;
+@group(0) @binding(4) var normals: texture_2d<f32>;
+@group(0) @binding(5) var halved_depth: texture_2d<f32>;
+@group(0) @binding(6) var halved_normals: texture_2d<f32>;
+@group(0) @binding(7) var bent: texture_2d<f32>;
+@group(0) @binding(8) var whole: texture_storage_2d<rgba16float, write>;
+
+/// Least weight of a pixel that is not of the surface, so that there always is a mean.
+const STRANGER: f32 = 1e-4;
+
+@compute @workgroup_size(16, 8)
+fn upsample_bent(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= textureDimensions(whole)) {
+        return;
+    }
+    let own = vec2<i32>(min(id.xy, textureDimensions(depth) - 1u));
+    let here = seen_surface(camera, own, textureLoad(depth, own, 0).x);
+    let last_normal = vec2<i32>(textureDimensions(normals)) - 1;
+    let normal = seen_normal(textureLoad(normals, min(own, last_normal), 0).xyz, vec3<f32>(0.0));
+    let last = vec2<i32>(textureDimensions(halved_depth)) - 1;
+    let at = 0.5 * (vec2<f32>(own) + 0.5) - 0.5;
+    let first = vec2<i32>(floor(at));
+    let part = at - floor(at);
+    var sum = vec4<f32>(0.0);
+    var weights = 0.0;
+    for (var index = 0; index < 4; index++) {
+        let corner = vec2<i32>(index & 1, index >> 1u);
+        let other = clamp(first + corner, vec2<i32>(0), last);
+        let there = seen_surface(halved_camera, other, textureLoad(halved_depth, other, 0).x);
+        let facing = seen_normal(textureLoad(halved_normals, other, 0).xyz, vec3<f32>(0.0));
+        let near = select(vec2<f32>(1.0) - part, part, corner == vec2<i32>(1));
+        let alike = edge_weight(blur, here.place, normal, there.place, facing);
+        let weight = select(0.0, near.x * near.y * max(alike, STRANGER), there.known && here.known);
+        let value = textureLoad(bent, other, 0);
+        sum += weight * vec4<f32>(value.xyz - 0.5 * facing, value.w);
+        weights += weight;
+    }
+    let nothing = weights <= 0.0;
+    let mean = sum / select(weights, 1.0, nothing);
+    let found = vec4<f32>(mean_from_difference(mean.xyz, normal), mean.w);
+    // What no halved pixel sees is open.
+    let open = select(vec3<f32>(0.0), 0.5 * normal, here.known);
+    textureStore(whole, id.xy, select(found, vec4<f32>(open, 1.0), nothing));
+}

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// Airlight 0.1.0: inverse/render_slices, permutation extinction_box (BOX PATHS RGB)
+// summary: A picture of a volume, linear in what is solved for: the product with W.
+// source: thesis 7.3.2, Eq. 7.4, 7.6, 7.8 and 7.13, Listing 7.1.
+// note: Dispatch over the picture of a view.
+// note: A step of length d through extinction s behind a transmittance T weighs T (1 - exp(-s d)) for emission, and that times scattered light
+// note: for albedo. For extinction it weighs d: the picture is the optical depth, the thesis's o with the other sign.
+// definition PATHS: extinction is solved for.
+// definition RGB: three channels, each by itself; else one.
+// definition BOX: what is solved for is constant in each voxel; else straight between them.
+// binding view: the view.
+// binding spans: which part of each ray lies in the volume, rg32float; of inverse/ray_spans, with BENT if this has it.
+// binding rendered: out, radiance of the volume, with PATHS its optical depth; r32float, rgba32float with RGB.
+// binding extinction: of the medium, 1/m; with PATHS what is solved for.
+
+// ---- airlight::inverse::basis ----
+// summary: Fields as sums of basis functions, one a voxel: triangle or box functions.
+// source: thesis 7.3.1.
+
+/// The voxel in which a place lies; of one outside the nearest.
+fn voxel_of_place(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
+    let last = vec3<f32>(size - vec3<u32>(1u));
+    return vec3<u32>(clamp(floor(unit * vec3<f32>(size)), vec3<f32>(0.0), last));
+}
+
+/// A field of box functions at a place.
+fn box_field(field: texture_3d<f32>, unit: vec3<f32>) -> vec4<f32> {
+    return textureLoad(field, voxel_of_place(unit, textureDimensions(field)), 0);
+}
+
+// ---- airlight::inverse::slice_steps ----
+// summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
+// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
+
+/// A view of the volume: rays are affine in the pixel. 208 bytes.
+struct SliceView {
+    /// Where the ray through the corner of the picture begins.
+    origin: vec3<f32>,
+    /// How many slices, from 1 up.
+    slices: u32,
+    /// Direction of that ray, of any length.
+    direction: vec3<f32>,
+    reserved_a: u32,
+    /// What a pixel to the right adds to the origin.
+    origin_right: vec3<f32>,
+    /// Of the picture, pixels.
+    width: u32,
+    /// What a pixel to the right adds to the direction.
+    direction_right: vec3<f32>,
+    /// Of the picture, pixels.
+    height: u32,
+    /// What a pixel down adds to the origin.
+    origin_down: vec3<f32>,
+    reserved_b: u32,
+    /// What a pixel down adds to the direction.
+    direction_down: vec3<f32>,
+    reserved_c: u32,
+    /// Unit vector across slices: an axis of the box.
+    axis: vec3<f32>,
+    /// How far from faces across the slices samples may lie of rays that do not cross their slice whole, of the box: anywhere from 1 on.
+    margin: f32,
+    /// Homogeneous column, in pixels, of a point (x, y, z, 1).
+    column_of: vec4<f32>,
+    /// Homogeneous row.
+    row_of: vec4<f32>,
+    /// What both are divided by.
+    divisor_of: vec4<f32>,
+    /// Edge of the box along x, in the world, metres.
+    edge_x: vec3<f32>,
+    reserved_e: u32,
+    /// Edge along y.
+    edge_y: vec3<f32>,
+    reserved_f: u32,
+    /// Edge along z.
+    edge_z: vec3<f32>,
+    reserved_g: u32,
+}
+
+/// A view ray.
+struct SliceRay {
+    /// Where it begins.
+    origin: vec3<f32>,
+    /// Of any length.
+    direction: vec3<f32>,
+    /// Metres that one length of `direction` is.
+    metres: f32,
+}
+
+/// What a ray has of a slice.
+struct SlicePart {
+    /// Its middle, moved to the middle plane of the slice.
+    place: vec3<f32>,
+    /// How long it is, metres; 0 where the ray has nothing of the slice.
+    metres: f32,
+}
+
+/// The ray through a position in pixels; (0.5, 0.5) is the middle of the first.
+fn slice_ray(view: SliceView, pixel: vec2<f32>) -> SliceRay {
+    let origin = view.origin + pixel.x * view.origin_right + pixel.y * view.origin_down;
+    let direction = view.direction + pixel.x * view.direction_right + pixel.y * view.direction_down;
+    let metres = direction.x * view.edge_x + direction.y * view.edge_y + direction.z * view.edge_z;
+    return SliceRay(origin, direction, length(metres));
+}
+
+/// The slices of a ray, nearest first: steps count from `first` to before `end`.
+struct SliceWalk {
+    /// The first slice from the low side of the axis.
+    first: u32,
+    /// The one past the last.
+    end: u32,
+    /// Whether the nearest is the first.
+    climbs: bool,
+}
+
+/// First slice of a ray's span and the one past the last, from the low side of the axis.
+fn slices_of(view: SliceView, ray: SliceRay, span: vec2<f32>) -> vec2<u32> {
+    let ends = dot(ray.origin, view.axis) + dot(ray.direction, view.axis) * span;
+    let count = f32(view.slices);
+    // One more to each side: an end that rounding has put into the neighbour.
+    let low = clamp(floor(min(ends.x, ends.y) * count - 0.01), 0.0, count);
+    let high = clamp(ceil(max(ends.x, ends.y) * count + 0.01), low, count);
+    return select(vec2<u32>(0u), vec2<u32>(vec2<f32>(low, high)), span.y > span.x);
+}
+
+/// The slices of a ray's span in its order.
+fn slice_walk(view: SliceView, ray: SliceRay, span: vec2<f32>) -> SliceWalk {
+    let slices = slices_of(view, ray, span);
+    return SliceWalk(slices.x, slices.y, dot(ray.direction, view.axis) >= 0.0);
+}
+
+/// The slice of a step.
+fn slice_of_step(walk: SliceWalk, step: u32) -> u32 {
+    return select(walk.end - 1u - (step - walk.first), step, walk.climbs);
+}
+
+/// What a ray has of a slice within its span.
+fn slice_part(view: SliceView, ray: SliceRay, span: vec2<f32>, slice: u32) -> SlicePart {
+    let speed = dot(ray.direction, view.axis);
+    let start = dot(ray.origin, view.axis);
+    let sides = vec2<f32>(f32(slice), f32(slice + 1u)) / f32(view.slices);
+    let still = abs(speed) < 1e-20;
+    let crossings = (sides - start) / select(speed, 1.0, still);
+    let within = start >= sides.x && start < sides.y;
+    let begin = max(span.x, select(min(crossings.x, crossings.y), select(3e38, -3e38, within), still));
+    let end = min(span.y, select(max(crossings.x, crossings.y), select(-3e38, 3e38, within), still));
+    let part = max(end - begin, 0.0);
+    let middle = ray.origin + ray.direction * (begin + 0.5 * part);
+    return SlicePart(middle + view.axis * (0.5 * (sides.x + sides.y) - dot(middle, view.axis)), part * ray.metres);
+}
+
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+/// The texel of channels.
+fn texel_of(value: vec3<f32>) -> vec4<f32> {
+    return vec4<f32>(value, 1.0);
+}
+
+/// The same number in all channels.
+fn all_channels(value: f32) -> vec3<f32> {
+    return vec3<f32>(value);
+}
+
+// ---- inverse/render_slices ----
+
+@group(0) @binding(0) var<uniform> view: SliceView;
+@group(0) @binding(1) var spans: texture_2d<f32>;
+@group(0) @binding(2) var rendered: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(3) var extinction: texture_3d<f32>;
+
+/// What is solved for, at a place.
+fn solved(field: texture_3d<f32>, place: vec3<f32>) -> vec4<f32> {
+    return box_field(field, place);
+}
+
+@compute @workgroup_size(16, 8)
+fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= vec2<u32>(view.width, view.height)) {
+        return;
+    }
+    let ray = slice_ray(view, vec2<f32>(id.xy) + 0.5);
+    let span = textureLoad(spans, min(id.xy, textureDimensions(spans) - 1u), 0).xy;
+    let walk = slice_walk(view, ray, span);
+    let first = walk.first;
+    let end = walk.end;
+    var sum = all_channels(0.0);
+    for (var step = first; step < end; step++) {
+        let part = slice_part(view, ray, span, slice_of_step(walk, step));
+        sum += channels_of(solved(extinction, part.place)) * part.metres;
+    }
+    textureStore(rendered, id.xy, texel_of(sum));
+}

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// Airlight 0.1.0: painterly/stroke_density, permutation default
+// summary: Density of strokes: their quads, added up, a layer of strokes a channel.
+// source: Ramalhao (2010), 4.2.4.
+// note: Drawn indirectly with `density_draw` of `counts` as arguments, a triangle around each quad, since two small ones cost more, into an rgba16float target that is cleared to 0, blended as source +
+// note: destination, for core WebGPU blends no 32-bit floats. A sum of n strokes is rounded n times by at most 2^-10 of it, for
+// note: adapters may round half floats to nearest or towards 0.
+// note: The target may be a fraction of the picture: density changes over the width of a stroke.
+// binding frame: the frame.
+// binding style: the style.
+// binding strokes: the strokes, in any order.
+// binding brushes: brushes, premultiplied; opacity in alpha.
+// binding brush_sampler: linear, with mipmaps.
+
+// ---- airlight::painterly::stroke ----
+// summary: A brush stroke, its states, what a frame knows of all strokes, and the style of the three layers of strokes.
+// source: Ramalhao, "Painterly stylization of real-time volume rendering" (2010), 4.2.1, 4.2.2, Table 5.1.
+
+/// Has faded out: the next compaction leaves it away.
+const STROKE_GONE: u32 = 0u;
+/// Fades in to the opacity of its layer, or has done so.
+const STROKE_STAYS: u32 = 1u;
+
+/// A brush stroke. 64 bytes.
+struct Stroke {
+    /// The point of the surface that it stands for, in the unit space of the volume, 0..1.
+    point: vec3<f32>,
+    /// Drawn at its birth: chooses brush, mirroring and variation, and seeds what chance does to it later.
+    hash: u32,
+    /// Scene-linear RGB that tints the brush.
+    color: vec3<f32>,
+    /// 0..1.
+    opacity: f32,
+    /// Of the point in the picture: (0, 0) top left, (1, 1) bottom right.
+    position: vec2<f32>,
+    /// Length, pixels of the picture.
+    size: f32,
+    /// Width over length.
+    aspect: f32,
+    /// Of its length in the picture, radians from +x towards +y (downwards), -pi/2 .. pi/2.
+    orientation: f32,
+    /// 0..2.
+    layer: u32,
+    /// STROKE_GONE, STROKE_STAYS, STROKE_LEAVES or STROKE_HIDDEN.
+    state: u32,
+    reserved: u32,
+}
+
+/// What a frame knows of all strokes. 176 bytes.
+struct StrokeFrame {
+    /// Unit space of the volume to the world, metres, in this frame.
+    world_from_unit: mat4x4<f32>,
+    /// Its inverse.
+    unit_from_world: mat4x4<f32>,
+    /// Width and height of the picture that strokes are drawn into, pixels.
+    picture_size: vec2<f32>,
+    /// Time since the frame before, seconds.
+    seconds: f32,
+    /// Number of the frame, for chance.
+    frame: u32,
+    /// Of a stroke of each layer, times the mean opacity of its brush: pixels of the sources.
+    areas: vec3<f32>,
+    /// Other seeds give other strokes.
+    seed: u32,
+    /// Strokes that fit into the buffers.
+    capacity: u32,
+    /// Factor on the probability of birth, 0..1; 0 for no new strokes.
+    generation: f32,
+    /// Factor on the probability of deletion, 0..1; 0 to thin nothing out.
+    deletion: f32,
+    reserved: f32,
+}
+
+/// Style of the strokes; three numbers are those of the coarse, medium and fine layer. 192 bytes.
+struct StrokeStyle {
+    /// Where each layer ends, gradient magnitude, ascending; the first begins at 0.
+    thresholds: vec3<f32>,
+    /// A stroke leaves its layer where the gradient is beyond its ends by this share of them.
+    hysteresis: f32,
+    /// Probability, 0..1, that a pixel of the sources gets a stroke in a frame where density is lacking.
+    probability: vec3<f32>,
+    /// Factor on gradient magnitudes before they meet the thresholds.
+    gradient_scale: f32,
+    /// Length, pixels of the picture.
+    size: vec3<f32>,
+    /// Strokes are longer or shorter by up to this share, 0..1.
+    size_variation: f32,
+    /// Width over length.
+    aspect: vec3<f32>,
+    /// Strokes are lighter or darker by up to this share, 0..1.
+    color_variation: f32,
+    /// Of a stroke that has faded in, 0..1.
+    opacity: vec3<f32>,
+    /// Density that one opaque stroke adds, kappa.
+    density_unit: f32,
+    /// Below this density strokes are born.
+    density_min: vec3<f32>,
+    /// 1: density counts strokes with the opacity they fade to; 0: with the opacity they have. Between: mixed.
+    anticipation: f32,
+    /// Above this density strokes are deleted.
+    density_max: vec3<f32>,
+    /// A stroke is seen where the surface lies within this many pixels' slope of its point.
+    occlusion_tolerance: f32,
+    /// Brush of each layer, a layer of the texture; negative for any, by the stroke's hash.
+    brush: vec3<f32>,
+    /// ALONG_SURFACE, FIXED_ANGLE or ALONG_CURVATURE.
+    orientation: u32,
+    /// Added to the orientation, radians; with FIXED_ANGLE it is the orientation.
+    angle: f32,
+    /// Share of the new colour that a stroke takes in a sixtieth of a second, 0..1.
+    color_rate: f32,
+    /// The same of its orientation.
+    orientation_rate: f32,
+    /// The same of its size.
+    size_rate: f32,
+    /// The same of its opacity while it fades in.
+    opacity_rate: f32,
+    /// The same while it fades out.
+    fade_out_rate: f32,
+    /// The same where it is occluded or out of the picture.
+    hidden_rate: f32,
+    reserved: f32,
+}
+
+/// The number of a layer, 0..2, out of three.
+fn of_layer(three: vec3<f32>, layer: u32) -> f32 {
+    return select(select(three.z, three.y, layer == 1u), three.x, layer == 0u);
+}
+
+/// Opacity that a stroke fades to, 0..1.
+fn target_opacity(style: StrokeStyle, layer: u32, state: u32) -> f32 {
+    return select(0.0, of_layer(style.opacity, layer), state == STROKE_STAYS);
+}
+
+// ---- airlight::painterly::stroke_density ----
+// summary: How densely strokes lie, and the probabilities of birth and deletion that keep it within bounds.
+// source: Ramalhao (2010), 4.2.4, 4.2.5, Table 5.1.
+
+/// What a stroke adds to the density of its layer at a texel. `unit`: kappa. `opacity`, `fades_to`, `brush`: 0..1.
+fn density_of_stroke(unit: f32, opacity: f32, fades_to: f32, anticipation: f32, brush: f32) -> f32 {
+    return unit * mix(opacity, fades_to, anticipation) * brush;
+}
+
+// ---- airlight::painterly::stroke_expand ----
+// summary: A stroke as a quad of the picture: corners, texture coordinates, brush and tint.
+// source: Ramalhao (2010), 4.2.6.
+
+/// Where a corner lies, pixels of a picture of `picture_size`.
+fn corner_position(stroke: Stroke, corner: u32, picture_size: vec2<f32>) -> vec2<f32> {
+    let side = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) - 0.5;
+    let along = vec2<f32>(cos(stroke.orientation), sin(stroke.orientation));
+    let across = vec2<f32>(-along.y, along.x);
+    let offset = stroke.size * (side.x * along + stroke.aspect * side.y * across);
+    return stroke.position * picture_size + offset;
+}
+
+/// Clip position of a place in a picture, pixels.
+fn clip_from_picture(place: vec2<f32>, picture_size: vec2<f32>) -> vec4<f32> {
+    return vec4<f32>(place / picture_size * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0), 0.5, 1.0);
+}
+
+/// Texture coordinates of a corner, 0..1; two bits of the hash mirror the brush.
+fn brush_coordinates(corner: u32, hash: u32) -> vec2<f32> {
+    let mirrored = corner ^ (hash >> 30u);
+    return vec2<f32>(f32(mirrored & 1u), f32((mirrored >> 1u) & 1u));
+}
+
+/// Layer of the brush texture. `given`: that of the style; negative for any of `count`.
+fn brush_layer(given: f32, hash: u32, count: u32) -> u32 {
+    let chosen = select(u32(max(given, 0.0)), (hash & 0xffffu) % max(count, 1u), given < 0.0);
+    return min(chosen, max(count, 1u) - 1u);
+}
+
+// ---- painterly/stroke_density ----
+
+@group(0) @binding(0) var<uniform> frame: StrokeFrame;
+@group(0) @binding(1) var<uniform> style: StrokeStyle;
+@group(0) @binding(2) var<storage, read> strokes: array<Stroke>;
+@group(0) @binding(3) var brushes: texture_2d_array<f32>;
+@group(0) @binding(4) var brush_sampler: sampler;
+
+struct Corner {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) coordinates: vec2<f32>,
+    @location(1) @interpolate(flat) brush: u32,
+    @location(2) @interpolate(flat) density: vec4<f32>,
+}
+
+@vertex
+fn vertex_density(@builtin(vertex_index) vertex: u32) -> Corner {
+    let stroke = strokes[min(vertex / 3u, arrayLength(&strokes) - 1u)];
+    // The corner 0 of the quad, and those that lie twice as far from it along its sides.
+    let corner = vertex % 3u;
+    let near = corner_position(stroke, 0u, frame.picture_size);
+    let place = near + 2.0 * (corner_position(stroke, corner, frame.picture_size) - near);
+    let first = brush_coordinates(0u, stroke.hash);
+    let fades_to = target_opacity(style, stroke.layer, stroke.state);
+    let density = density_of_stroke(style.density_unit, stroke.opacity, fades_to, style.anticipation, 1.0);
+    // What adds nothing has no area, and lies beside the picture.
+    let counts = density > 0.0 && stroke.state != STROKE_GONE;
+    let channel = vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(stroke.layer);
+    return Corner(
+        select(vec4<f32>(-2.0, -2.0, 0.5, 1.0), clip_from_picture(place, frame.picture_size), counts),
+        first + 2.0 * (brush_coordinates(corner, stroke.hash) - first),
+        brush_layer(of_layer(style.brush, stroke.layer), stroke.hash, textureNumLayers(brushes)),
+        select(vec4<f32>(0.0), vec4<f32>(density), channel)
+    );
+}
+
+@fragment
+fn fragment_density(corner: Corner) -> @location(0) vec4<f32> {
+    let opacity = textureSample(brushes, brush_sampler, corner.coordinates, corner.brush).a;
+    let inside = all(corner.coordinates >= vec2<f32>(0.0)) && all(corner.coordinates <= vec2<f32>(1.0));
+    return corner.density * select(0.0, opacity, inside);
+}

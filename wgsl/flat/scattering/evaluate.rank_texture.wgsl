@@ -1,0 +1,790 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// Airlight 0.1.0: scattering/evaluate, permutation rank_texture (COLORS=3 EPIPOLE_MARCH LIGHT_TEXTURE PER_POINT RANK=12 WEIGHT_BITS=8)
+// summary: In-scattered radiance of every pixel from the filtered bases: a dot product, whatever the scene.
+// source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
+// definition RANK: exact visibility by rank queries, bits of a depth as in `rank`. Not with REGIONS.
+// definition WEIGHT_BITS: bits of a weight, as in `rank_weights`; with RANK and COLORS.
+// definition COLORS: 3 with LIGHT_TEXTURE, as in the filter. Not with REGIONS or NEAR_PLANE.
+// definition LIGHT_TEXTURE: a texture colours the light; with COLORS=3.
+// definition PER_POINT: EPIPOLE_MARCH looks up every step by itself; needed with COLORS or SHADOW_ARRAY.
+// definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.
+// binding camera: the camera, perspective.
+// binding light: the directional light and its shadow map's clip space.
+// binding medium: the medium.
+// binding frame: the frame of the slices.
+// binding slices: their bounds, rgba32float, one texel a slice.
+// binding depth: depth buffer of the picture, a depth format or r32float; non-finite values count as far.
+// binding shadow_map: depth of the standard shadow map; only with EPIPOLE_MARCH, without SHADOW_ARRAY.
+// binding light_texture: linear RGB 0..1 over the whole shadow map; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
+// binding light_sampler: linear, clamped to the edge; only with EPIPOLE_MARCH and LIGHT_TEXTURE.
+// binding rank_cells: what `rank` makes, rg32uint, or with COLORS `rank_weights`, rgba32uint; with RANK only, without WAVELET; so the next two.
+// binding rank_starts: the same, r32uint.
+// binding rank_planes: the same, rgba32uint.
+// binding rank_weights: the same, rgba32uint; with RANK and WEIGHT_BITS only.
+// binding rectified: the rectified map, of which only the size is read; with RANK only.
+// binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+}
+
+// ---- airlight::core::camera ----
+// summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
+// source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
+
+/// A camera, as an engine hands it over. 160 bytes.
+struct Camera {
+    /// View-projection matrix, world to clip.
+    clip_from_world: mat4x4<f32>,
+    /// Its inverse, clip to world.
+    world_from_clip: mat4x4<f32>,
+    /// Position of the eye in the world, metres; unused by an orthographic camera.
+    eye: vec3<f32>,
+    /// Clip depth of the near plane: 0 forward, 1 reversed.
+    near_depth: f32,
+    /// Width and height of the picture in pixels.
+    viewport: vec2<f32>,
+    /// Clip depth of the far plane: 1 forward, 0 reversed.
+    far_depth: f32,
+    /// PERSPECTIVE or ORTHOGRAPHIC.
+    projection: u32,
+}
+
+/// A view ray: world-space origin in metres, unit direction.
+struct Ray {
+    /// Where it starts in the world, metres.
+    origin: vec3<f32>,
+    /// Unit vector, away from the eye.
+    direction: vec3<f32>,
+}
+
+/// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
+fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+/// The view ray through `ndc` of a perspective camera.
+fn perspective_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
+    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
+    // With w = 0 (infinite far plane) far.xyz is the direction itself.
+    return Ray(camera.eye, normalize(far.xyz - camera.eye * far.w));
+}
+
+// ---- airlight::core::fourier_basis ----
+// summary: Visibility as a Fourier series of the depth difference, four bases at a time.
+// source: thesis 4.3.1, Eq. 4.7, after Annen et al., "Convolution shadow maps" (2007).
+
+/// Part of the depth range at either end that is kept free of view rays.
+const GUARD: f32 = 0.05;
+
+/// Depth in the guarded range. `unit`: depth over the bounds of the view rays, where rays lie in
+/// 0..1 and blockers may lie outside; the result is clamped to 0..1.
+fn guarded(unit: f32) -> f32 {
+    return clamp(GUARD + (1.0 - 2.0 * GUARD) * unit, 0.0, 1.0);
+}
+
+// ---- airlight::core::light ----
+// summary: A light, its fall-off and texture, and the clip space of its standard shadow map.
+// source: thesis 4.2.1; a point source seen through a cone and softened by its radius.
+
+/// A light at infinity: all light rays are parallel.
+const DIRECTIONAL: u32 = 0u;
+/// A light at a point that shines into a cone.
+const SPOT: u32 = 1u;
+
+/// A light and its standard shadow map. 192 bytes.
+struct Light {
+    /// World to the shadow map's clip space; affine for a directional light, unused with an array of shadow maps.
+    clip_from_world: mat4x4<f32>,
+    /// Its inverse.
+    world_from_clip: mat4x4<f32>,
+    /// Unit vector TOWARDS a directional light; of a spot, the reverse of the axis along which it shines.
+    direction: vec3<f32>,
+    /// Depth of an empty texel of the shadow map, farthest from the light: 1 forward, 0 reversed.
+    far_depth: f32,
+    /// Linear RGB: for a directional light the irradiance at normal incidence; for one at a point its radiant
+    /// intensity, the irradiance at a distance of one metre.
+    radiance: vec3<f32>,
+    /// DIRECTIONAL, SPOT or POINT.
+    kind: u32,
+    /// Where a spot or point light is, metres.
+    position: vec3<f32>,
+    /// Radius of a spot or point light, metres, positive: nearer to it the fall-off with distance stops.
+    radius: f32,
+    /// Cosines of the half angles inside which a spot shines fully, and outside which not at all.
+    spot_cosines: vec2<f32>,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
+/// Unit vector from `point`, metres in the world, TOWARDS the light; zero where a light at a point is right there.
+fn direction_to_light(light: Light, point: vec3<f32>) -> vec3<f32> {
+    let between = light.position - point;
+    let local = between * inverseSqrt(max(dot(between, between), 1e-30));
+    return select(local, light.direction, light.kind == DIRECTIONAL);
+}
+
+/// Angular fall-off, 0..1, along the light ray with the unit vector `towards` TOWARDS the light: of a spot 1 inside
+/// the inner cone, 0 outside the outer one, smooth between; of every other light 1.
+fn angular_falloff(light: Light, towards: vec3<f32>) -> f32 {
+    // Not smoothstep: WGSL leaves it open what that is between two equal edges.
+    let above = dot(towards, light.direction) - light.spot_cosines.y;
+    let unit = clamp(above / max(light.spot_cosines.x - light.spot_cosines.y, 1e-6), 0.0, 1.0);
+    return select(1.0, unit * unit * (3.0 - 2.0 * unit), light.kind == SPOT);
+}
+
+/// Position in texels of a map, and depth, of a point in the clip space of that map; a point at or behind the light
+/// (w <= 0) is carried outside the map. `size`: of the map in texels.
+fn texels_from_clip(clip: vec4<f32>, size: vec2<f32>) -> vec3<f32> {
+    let before = clip.w > 0.0;
+    let ndc = clip.xyz / select(1.0, clip.w, before);
+    return select(vec3<f32>(-size, 0.0), vec3<f32>((ndc.xy * vec2<f32>(0.5, -0.5) + 0.5) * size, ndc.z), before);
+}
+
+/// Position in texels of the shadow map, and depth, of a point in the world, metres; a point behind a spot is carried
+/// outside the map. `size`: of the map in texels.
+fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    return texels_from_clip(light.clip_from_world * vec4<f32>(point, 1.0), size);
+}
+
+/// What a light texture (gobo) lets through, linear RGB 0..1, towards `point`, metres in the world. `map`: any float
+/// format that filters, stretched over the whole shadow map; `map_sampler`: linear, clamped to the edge. Outside it a
+/// directional light goes by unhindered and a spot is dark. Non-finite texels are dark.
+fn light_texture_color(
+    light: Light, map: texture_2d<f32>, map_sampler: sampler, point: vec3<f32>
+) -> vec3<f32> {
+    let uv = shadow_position(light, vec2<f32>(1.0), point).xy;
+    let inside = all(uv >= vec2<f32>(0.0)) && all(uv <= vec2<f32>(1.0));
+    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL);
+    let color = finite_or_rgb(textureSampleLevel(map, map_sampler, uv, 0.0).rgb, 0.0);
+    return select(vec3<f32>(outside), clamp(color, vec3<f32>(0.0), vec3<f32>(1.0)), inside);
+}
+
+// ---- airlight::core::phase ----
+// summary: Phase functions, normalised to one over the sphere.
+// source: thesis 2.4, Eq. 2.11 (Henyey and Greenstein 1941).
+
+/// 1 / (4 pi), the value of the isotropic phase function, 1/sr.
+const ISOTROPIC: f32 = 0.07957747154594767;
+
+/// The Henyey-Greenstein phase function, 1/sr. `cosine`: of the scattering angle, -1..1;
+/// `g`: mean cosine, clamped to -0.999..0.999, zero is isotropic.
+fn henyey_greenstein(cosine: f32, g: f32) -> f32 {
+    let mean = clamp(g, -0.999, 0.999);
+    // (1 - g)^2 + 2 g (1 - cos) is 1 + g^2 - 2 g cos without the cancellation near the peak.
+    let near = (1.0 - abs(mean)) * (1.0 - abs(mean));
+    let turn = 1.0 - clamp(select(-cosine, cosine, mean >= 0.0), -1.0, 1.0);
+    let inverse = inverseSqrt(near + 2.0 * abs(mean) * turn);
+    return ISOTROPIC * (1.0 - mean * mean) * (inverse * inverse * inverse);
+}
+
+// ---- airlight::core::picture ----
+// summary: One triangle over the whole picture, for passes in fragment form.
+// source: the usual full-screen triangle.
+
+/// Clip-space position of corner `index`, 0..2, of a triangle that covers the picture.
+fn picture_corner(index: u32) -> vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+// ---- airlight::core::prefix_sum ----
+// summary: Running weighted mean along a row: the prefix sum that filters basis textures.
+// source: thesis 4.3.3, Listings 4.1 and 4.2.
+
+/// 1 - exp(-x) for x >= 0, without cancellation for small x. Relative error below 1e-6.
+fn one_minus_exp(x: f32) -> f32 {
+    const third: f32 = 1.0 / 3.0;
+    const sixth: f32 = 1.0 / 6.0;
+    let series = x * (1.0 - x * 0.5 * (1.0 - x * third * (1.0 - x * 0.25 * (1.0 - x * 0.2 * (1.0 - x * sixth)))));
+    return select(1.0 - exp(-x), series, x < 0.3);
+}
+
+// ---- airlight::scattering::rectify ----
+// summary: Epipolar coordinates around a directional light: rows are slices, columns radii, depth the angle to the light.
+// source: thesis 4.4.1, after Baran et al., "A hierarchical volumetric shadow algorithm" (2010); Eq. 4.12.
+
+const PI: f32 = 3.141592653589793;
+
+/// Slices are at least this wide in theta, radians.
+const LEAST_WIDTH: f32 = 1e-3;
+
+/// Axes around the light, the range of the slices, and the view rays in these axes. 128 bytes.
+struct Frame {
+    /// Unit vector TOWARDS the light.
+    light: vec3<f32>,
+    /// Azimuth of row 0, radians.
+    azimuth_min: f32,
+    /// Unit vector of azimuth 0.
+    axis_a: vec3<f32>,
+    /// Rows per radian of azimuth.
+    rows_per_radian: f32,
+    /// Unit vector of azimuth pi / 2.
+    axis_b: vec3<f32>,
+    /// Number of rows.
+    rows: f32,
+    /// Position of the eye, where all slices meet.
+    eye: vec3<f32>,
+    /// 1 where the rows go round the full circle and wrap, 0 elsewhere.
+    wraps: f32,
+    /// The view ray through ndc, times (x, y, 1): its part towards the light. Any length, the same for all four.
+    ray_light: vec3<f32>,
+    reserved_a: f32,
+    /// Its part along axis_a.
+    ray_a: vec3<f32>,
+    reserved_b: f32,
+    /// Its part along axis_b.
+    ray_b: vec3<f32>,
+    reserved_c: f32,
+    /// Times (x, y, depth, 1): what its length is divided by for the distance of the surface at that depth.
+    ray_scale: vec4<f32>,
+}
+
+/// Bounds of one slice.
+struct Slice {
+    /// Least angle to the light of its view rays, radians.
+    angle_min: f32,
+    /// Greatest angle to the light of its view rays, radians.
+    angle_max: f32,
+    /// Radius in metres at the right end of its row.
+    radius_max: f32,
+    /// k of the reference ray, the bisectrix: sine of its angle to the light.
+    reference: f32,
+}
+
+/// A view ray in epipolar coordinates.
+struct EpipolarRay {
+    /// Angle to the light, 0..pi, constant along the ray.
+    angle: f32,
+    /// Its sine: metres of radius per metre of distance.
+    sine: f32,
+    /// Its cosine.
+    cosine: f32,
+    /// Row, fractional; row j is at the value j.
+    row: f32,
+    /// Length of the ray in metres, up to the surface or the limit.
+    distance: f32,
+}
+
+/// Greatest sine of an angle to the light between the bounds of a slice, within 2 %.
+fn greatest_sine(slice: Slice) -> f32 {
+    let off = max(max(slice.angle_min - 0.5 * PI, 0.5 * PI - slice.angle_max), 0.0);
+    let square = min(off * off, 0.25 * PI * PI);
+    return 1.0 - square * (0.5 - square / 24.0);
+}
+
+/// What `slice_texel` did, undone.
+fn slice_from_texel(texel: vec4<f32>) -> Slice {
+    return Slice(texel.x, texel.y, texel.z, texel.w);
+}
+
+/// The view ray through `ndc`, up to the surface with the depth-buffer value `depth` and at most `limit` metres long.
+fn epipolar_ray(frame: Frame, ndc: vec2<f32>, depth: f32, limit: f32) -> EpipolarRay {
+    let at = vec3<f32>(ndc, 1.0);
+    let towards = dot(frame.ray_light, at);
+    let a = dot(frame.ray_a, at);
+    let b = dot(frame.ray_b, at);
+    let radial = sqrt(a * a + b * b);
+    let along = sqrt(radial * radial + towards * towards);
+    let inverse = 1.0 / max(along, 1e-30);
+    // At the light itself the azimuth is free; atan2(0, 0) is not.
+    let azimuth = select(atan2(b, a), 0.0, radial < 1e-12 * along);
+    let row = (azimuth - frame.azimuth_min) * frame.rows_per_radian;
+    // A wrapping row may lie at `rows` itself: the sampler repeats.
+    let last = select(frame.rows - 1.0, frame.rows, frame.wraps > 0.0);
+    // along / scale, without dividing by a scale that is zero or has rounded below it.
+    let scale = dot(frame.ray_scale, vec4<f32>(ndc, depth, 1.0));
+    let beyond = along >= limit * scale;
+    let distance = select(along / select(scale, 1.0, beyond), limit, beyond);
+    return EpipolarRay(
+        atan2(radial, towards), radial * inverse, towards * inverse, clamp(row, 0.0, last), distance
+    );
+}
+
+/// The row nearest to a fractional `row`, always inside the map.
+fn nearest_row(frame: Frame, row: f32) -> u32 {
+    let rows = u32(frame.rows);
+    let nearest = u32(max(row, 0.0) + 0.5);
+    // Half a row beyond the last is the first, where rows wrap.
+    return select(min(nearest, rows - 1u), 0u, nearest >= rows && frame.wraps > 0.0);
+}
+
+/// Depth 0..1 in the rectified map of an angle to the light: view rays of the slice lie in
+/// GUARD .. 1 - GUARD, blockers beyond its bounds are clamped into the guard.
+fn depth_from_angle(slice: Slice, angle: f32) -> f32 {
+    return guarded((angle - slice.angle_min) / max(slice.angle_max - slice.angle_min, 0.1 * LEAST_WIDTH));
+}
+
+/// Depth in the rectified map of a view ray: kept out of the guard, into which a ray beside the
+/// middle of its slice may fall.
+fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
+    return clamp(depth_from_angle(slice, ray.angle), GUARD, 1.0 - GUARD);
+}
+
+// ---- airlight::scattering::single_scatter ----
+// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
+// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
+
+/// A homogeneous medium. 32 bytes.
+struct Medium {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
+    extinction: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// Rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
+/// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or
+/// plain, 0..1; `distance`: length of the ray in metres; `cosine`: view direction times direction
+/// towards the light.
+fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
+    let phase = henyey_greenstein(cosine, medium.g);
+    return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
+}
+
+// ---- airlight::scattering::shadow_lookup ----
+// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
+// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
+
+/// A texel of a shadow map, on the way from a point in the world.
+struct Shadow {
+    /// Depth of the point itself.
+    depth: f32,
+    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
+    stored: f32,
+    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
+    blocked: u32,
+}
+
+/// The shadow map's texel on the light ray through `point`, metres in the world. `map`: a depth format or r32float.
+fn shadow_in_map(map: texture_2d<f32>, light: Light, point: vec3<f32>) -> Shadow {
+    let size = vec2<f32>(textureDimensions(map));
+    let at = shadow_position(light, size, point);
+    let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
+    let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
+    let stored = clamp(finite_or(textureLoad(map, texel, 0).x, light.far_depth), 0.0, 1.0);
+    return Shadow(at.z, stored, select(0u, 1u, inside && stored != light.far_depth));
+}
+
+/// 1 where the point is lit, else 0. `far_depth`: of an empty texel, 1 forward, 0 reversed.
+fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
+    // Depth must grow away from the light for the comparison.
+    let facing = select(-1.0, 1.0, far_depth > 0.5);
+    return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
+}
+
+// ---- airlight::scattering::lit ----
+// summary: Callback: the light that reaches a point, and its mean over a view ray by marching, from a pass' bindings.
+// source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
+
+@group(0) @binding(6) var shadow_map: texture_2d<f32>;
+@group(0) @binding(11) var light_texture: texture_2d<f32>;
+@group(0) @binding(12) var light_sampler: sampler;
+
+/// Visibility, 0 or 1, times fall-off and light texture at a point in the world, metres.
+fn lit_at(light: Light, point: vec3<f32>) -> vec3<f32> {
+    let visibility = lit_by_shadow(shadow_in_map(shadow_map, light, point), light.far_depth);
+    let lit = vec3<f32>(visibility * angular_falloff(light, direction_to_light(light, point)));
+    return lit * light_texture_color(light, light_texture, light_sampler, point);
+}
+
+/// Mean of `lit_at` over a view ray between two distances in metres, by equal steps, weighted by transmittance.
+/// `extinction` in 1/m, 0 for the plain mean; `offset`: 0..1, where in each step the sample lies.
+fn marched_light(
+    light: Light, origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
+) -> vec3<f32> {
+    let stride = (span.y - span.x) / f32(max(steps, 1u));
+    var sum = vec3<f32>(0.0);
+    var total = 0.0;
+    for (var done = 0u; done < steps; done++) {
+        let along = stride * (f32(done) + offset);
+        let weight = exp(-min(extinction * stride * f32(done), 80.0));
+        sum += weight * lit_at(light, origin + (span.x + along) * direction);
+        total += weight;
+    }
+    return sum / max(total, 1.0);
+}
+
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// A view ray in a rectified map.
+struct RowRay {
+    /// Row, fractional; row j is at the value j.
+    row: f32,
+    /// Texels before the ray begins, fractional.
+    begin: f32,
+    /// Texels before the ray ends, fractional.
+    end: f32,
+    /// Depth of the ray, 0..1.
+    depth: f32,
+}
+
+// ---- airlight::scattering::visibility_rank ----
+// summary: Exact mean visibility of a view ray: how many of the first texels of a row lie behind it, by one rank query.
+// source: none; a rank structure over a permutation, cut into words: docs/src/rank.md explains it with a drawing.
+
+/// Least stretch that is asked for, texels: shorter ones see their texel.
+const LEAST_TEXELS: f32 = 1e-3;
+
+/// A depth, clamped to 0..1, as a whole number of `bits` bits.
+fn rank_value(depth: f32, bits: u32) -> u32 {
+    return u32(clamp(depth, 0.0, 1.0) * f32((1u << bits) - 1u) + 0.5);
+}
+
+/// The lowest `count` bits, 0..32.
+fn low_bits(count: u32) -> u32 {
+    return select((1u << (count & 31u)) - 1u, 0xffffffffu, count >= 32u);
+}
+
+/// Four bit planes more of the comparison `value < limit` of 32 values at once, from the lowest plane up. `limit`: its
+/// four bits lowest.
+fn less_by_planes(less: u32, planes: vec4<u32>, limit: u32) -> u32 {
+    var result = less;
+    result = select(result & ~planes.x, result | ~planes.x, (limit & 1u) != 0u);
+    result = select(result & ~planes.y, result | ~planes.y, (limit & 2u) != 0u);
+    result = select(result & ~planes.z, result | ~planes.z, (limit & 4u) != 0u);
+    return select(result & ~planes.w, result | ~planes.w, (limit & 8u) != 0u);
+}
+
+/// Where a query lies in the structure.
+struct RankPlace {
+    /// Texels that the ray covers, at least LEAST_TEXELS.
+    covered: f32,
+    /// Of the last of these, in which the ray ends.
+    column: u32,
+    /// What of it is covered, 0..1.
+    part: f32,
+    /// The cell: chunk times the number of blocks plus block.
+    cell: u32,
+    /// Ranks of the chunk that are below the ray, 0..32.
+    ranks: u32,
+    /// The columns of the block with a value below that of the ray, a bit each.
+    less: u32,
+}
+
+/// The place of a query. `starts`: how many texels of a row have a smaller value, two values of 16 bits a texel;
+/// `planes`: bit planes, four a layer, one texel a block; `columns` of the map; `texels`: fractional.
+fn rank_place(
+    starts: texture_2d<u32>, planes: texture_2d_array<u32>, bits: u32, columns: u32, row: u32, texels: f32, depth: f32
+) -> RankPlace {
+    let covered = clamp(texels, LEAST_TEXELS, f32(columns));
+    let column = min(u32(covered), columns - 1u);
+    let block = column / 32u;
+    let value = rank_value(depth, bits);
+    let pair = textureLoad(starts, vec2<u32>(value / 2u, row), 0).x;
+    let start = (pair >> (16u * (value & 1u))) & 0xffffu;
+    let blocks = (columns + 31u) / 32u;
+    let chunk = min(start / 32u, blocks - 1u);
+    var less = 0u;
+    for (var layer = 0u; layer < (bits + 3u) / 4u; layer++) {
+        less = less_by_planes(less, textureLoad(planes, vec2<u32>(block, row), layer, 0), value >> (4u * layer));
+    }
+    return RankPlace(
+        covered, column, covered - f32(column), chunk * blocks + block, start - 32u * chunk, less
+    );
+}
+
+// ---- airlight::scattering::visibility_rank_weights ----
+// summary: Mean of visibility times fall-off of a view ray over columns that have weights of their own, by one rank query.
+// source: none; a rank structure over a permutation whose points have weights: docs/src/rank.md explains it.
+
+/// Layers of `weights` before its planes: the steps of the columns of a block, the weight left of a block, and the steps
+/// of the ranks of a chunk. A component is a channel: colours, or the weight alone without these, and last the plain weight.
+const WEIGHT_HEADS: u32 = 3u;
+
+/// Channels for so many colours; 0 for the weight alone.
+fn weight_channels(colors: u32) -> u32 {
+    return colors + 1u;
+}
+
+/// First layer of the columns' planes of a channel.
+fn column_layer(channel: u32, weight_bits: u32) -> u32 {
+    return WEIGHT_HEADS + channel * (weight_bits / 4u);
+}
+
+/// First layer of the ranks' planes of a channel, which is not the plain weight next to colours.
+fn rank_layer(channel: u32, colors: u32, weight_bits: u32) -> u32 {
+    return WEIGHT_HEADS + (weight_channels(colors) + channel) * (weight_bits / 4u);
+}
+
+/// Steps, summed, of the columns or ranks that are set in `which`, and `part` of those in `partly`: for two words at once.
+/// `place`: the block, or chunk, and row; `layer`: the first of the planes.
+fn weight_sums(
+    weights: texture_2d_array<u32>, place: vec2<u32>, layer: u32, weight_bits: u32, which: vec2<u32>,
+    partly: vec2<u32>, part: f32
+) -> vec2<f32> {
+    var whole = vec2<u32>(0u);
+    var last = vec2<u32>(0u);
+    for (var four = 0u; four < weight_bits / 4u; four++) {
+        let planes = textureLoad(weights, place, layer + four, 0);
+        let each = vec4<u32>(1u, 2u, 4u, 8u) << vec4<u32>(4u * four);
+        whole.x += dot(countOneBits(planes & vec4<u32>(which.x)), each);
+        whole.y += dot(countOneBits(planes & vec4<u32>(which.y)), each);
+        last.x += dot(countOneBits(planes & vec4<u32>(partly.x)), each);
+        last.y += dot(countOneBits(planes & vec4<u32>(partly.y)), each);
+    }
+    return vec2<f32>(whole) + part * vec2<f32>(last);
+}
+
+/// What of a row a query adds.
+struct RankWords {
+    /// Block and row.
+    block: vec2<u32>,
+    /// Chunk and row.
+    chunk: vec2<u32>,
+    /// Ranks of the chunk that are meant: left of the block, and dark.
+    meant: u32,
+    /// Columns of the block that are covered: those lit, and all.
+    covered: vec2<u32>,
+    /// The column in which the ray ends, the same.
+    last: vec2<u32>,
+    /// What of that is covered, 0..1.
+    part: f32,
+}
+
+/// Steps of a channel: of the dark ranks of the chunk, and of the lit and of all columns of the block that are covered.
+fn channel_steps(
+    weights: texture_2d_array<u32>, words: RankWords, channel: u32, colors: u32, weight_bits: u32
+) -> vec3<f32> {
+    let ranks = weight_sums(
+        weights, words.chunk, rank_layer(channel, colors, weight_bits), weight_bits, vec2<u32>(words.meant),
+        vec2<u32>(0u), 0.0
+    );
+    let columns = weight_sums(
+        weights, words.block, column_layer(channel, weight_bits), weight_bits, words.covered, words.last, words.part
+    );
+    return vec3<f32>(ranks.x, columns);
+}
+
+/// Mean of visibility times fall-off, for each of `colors` colours (0: the mean visibility, 1: the same for all), of the
+/// first `texels` texels of `row` at the depth of a ray, 0..1. `cells`, `starts`, `planes` and `weights` are what the pass
+/// `rank_weights` makes, for depths of `bits` bits and weights of `weight_bits` bits; `columns` of the map.
+fn rank_means(
+    cells: texture_2d<u32>, starts: texture_2d<u32>, planes: texture_2d_array<u32>, weights: texture_2d_array<u32>,
+    bits: u32, weight_bits: u32, colors: u32, columns: u32, row: u32, texels: f32, depth: f32
+) -> vec3<f32> {
+    let at = rank_place(starts, planes, bits, columns, row, texels, depth);
+    let cell = textureLoad(cells, vec2<u32>(at.cell, row), 0);
+    let base = bitcast<vec3<f32>>(cell.yzw);
+    let covered = low_bits(at.column & 31u);
+    let last = 1u << (at.column & 31u);
+    let words = RankWords(
+        vec2<u32>(at.column / 32u, row),
+        vec2<u32>(at.cell / ((columns + 31u) / 32u), row),
+        cell.x & low_bits(at.ranks),
+        vec2<u32>(covered & ~at.less, covered),
+        vec2<u32>(last & ~at.less, last),
+        at.part
+    );
+    let column_step = bitcast<vec4<f32>>(textureLoad(weights, words.block, 0u, 0));
+    let left = bitcast<vec4<f32>>(textureLoad(weights, words.block, 1u, 0));
+    let rank_step = bitcast<vec4<f32>>(textureLoad(weights, words.chunk, 2u, 0)).xyz;
+
+    let first = channel_steps(weights, words, 0u, colors, weight_bits);
+    var ranks = vec3<f32>(first.x);
+    var lit = vec3<f32>(first.y);
+    var total = left.x + column_step.x * first.z;
+    if colors == 3u {
+        let second = channel_steps(weights, words, 1u, colors, weight_bits);
+        let third = channel_steps(weights, words, 2u, colors, weight_bits);
+        ranks = vec3<f32>(first.x, second.x, third.x);
+        lit = vec3<f32>(first.y, second.y, third.y);
+    }
+    if colors > 0u {
+        // The plain weight is a channel of its own.
+        let layer = column_layer(colors, weight_bits);
+        let plain = weight_sums(weights, words.block, layer, weight_bits, words.covered, words.last, words.part);
+        total = left.w + column_step.w * plain.y;
+    }
+    // Left of the block all but the dark, in it the lit.
+    let each = left.xyz - (base + rank_step * ranks) + column_step.xyz * lit;
+    let sum = select(vec3<f32>(each.x), each, colors == 3u);
+    // Where all that is covered weighs next to nothing, the last texel stands for it.
+    let seen = select(0.0, 1.0, colors == 0u && words.last.x != 0u);
+    return select(vec3<f32>(seen), clamp(sum / max(total, 1e-35), vec3<f32>(0.0), vec3<f32>(1.0)), total > 1e-35);
+}
+
+// ---- airlight::scattering::prefiltered ----
+// summary: Callback: mean visibility of a stretch of a row, by whichever method the pass was built for.
+// source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4; visibility_rank and visibility_moments for the others.
+
+@group(0) @binding(7) var rank_cells: texture_2d<u32>;
+@group(0) @binding(8) var rank_starts: texture_2d<u32>;
+@group(0) @binding(13) var rank_planes: texture_2d_array<u32>;
+@group(0) @binding(14) var rectified: texture_2d<f32>;
+const RANK_BITS: u32 = u32(12);
+@group(0) @binding(15) var rank_weights: texture_2d_array<u32>;
+const BITS_OF_WEIGHTS: u32 = u32(8);
+const RANK_COLORS: u32 = u32(3);
+
+/// The stretch of a row from the texel at which a region begins.
+struct Prefix {
+    /// Row, fractional; row j is at the value j.
+    row: f32,
+    /// 1 where the row after the last is the first, else 0.
+    wraps: f32,
+    /// First texel of the region.
+    first: f32,
+    /// Where the stretch ends, texels from the start of the row, fractional.
+    texels: f32,
+    /// Optical depth of a texel of the ray; 0 for plain means.
+    optical_step: f32,
+    /// By which what was stored is weighted: that of the reference ray, with RANK the least of the row.
+    stored_step: f32,
+}
+
+/// Columns and rows of the rectified map.
+fn map_size() -> vec2<u32> {
+    return textureDimensions(rectified);
+}
+
+/// What the stretch in a whole `row` gives, 0..1: the mean visibility, or with COLORS that times fall-off, for each colour.
+fn row_means(at: Prefix, row: u32, depth: f32) -> vec3<f32> {
+    let columns = map_size().x;
+    return rank_means(
+        rank_cells, rank_starts, rank_planes, rank_weights, RANK_BITS, BITS_OF_WEIGHTS, RANK_COLORS, columns, row,
+        at.texels, depth
+    );
+}
+
+/// The means of the nearest row, or of the two about the stretch.
+fn mixed_means(at: Prefix, depth: f32) -> vec3<f32> {
+    let rows = map_size().y;
+    let whole = min(u32(max(at.row, 0.0)), rows - 1u);
+    let next = select(min(whole + 1u, rows - 1u), 0u, whole + 1u >= rows && at.wraps > 0.0);
+    let share = clamp(at.row - f32(whole), 0.0, 1.0);
+    return mix(row_means(at, whole, depth), row_means(at, next, depth), share);
+}
+
+/// Mean of visibility times fall-off of a stretch at the depth of a ray, for each colour.
+fn prefix_colors(at: Prefix, depth: f32) -> vec3<f32> {
+    return mixed_means(at, depth);
+}
+
+// ---- airlight::scattering::scattered_ray ----
+// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
+// source: thesis 4.3.3, Listing 4.4.
+
+/// What stands for infinity, metres.
+const FARTHEST: f32 = 1e15;
+
+/// A view ray and the light that the air scatters into it.
+struct ScatteredRay {
+    /// Linear RGB radiance at the eye, at most 65504.
+    radiance: vec3<f32>,
+    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
+    /// colours.
+    visibility: f32,
+    /// Where it passes through the picture.
+    ndc: vec2<f32>,
+    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
+    /// the medium may end before.
+    distance: f32,
+    /// View direction times the unit vector at its origin towards the light, -1..1.
+    cosine: f32,
+}
+
+/// What passes write of it: radiance, and in alpha the mean visibility.
+fn scattered_texel(ray: ScatteredRay) -> vec4<f32> {
+    return vec4<f32>(ray.radiance, ray.visibility);
+}
+
+// ---- airlight::scattering::evaluated ----
+// summary: Callback: what the air scatters into a pixel's view ray, from filtered bases, moments or rank queries over epipolar rows.
+// source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4.
+
+@group(0) @binding(0) var<uniform> camera: Camera;
+@group(0) @binding(1) var<uniform> light: Light;
+@group(0) @binding(2) var<uniform> medium: Medium;
+@group(0) @binding(3) var<uniform> frame: Frame;
+@group(0) @binding(4) var slices: texture_2d<f32>;
+@group(0) @binding(5) var depth: texture_2d<f32>;
+
+/// Rays that cover fewer texels are marched.
+const EPIPOLE_TEXELS: f32 = 8.0;
+/// Steps of that march.
+const EPIPOLE_STEPS: u32 = 96u;
+
+/// Optical depths of a texel.
+struct Steps {
+    /// Of the ray itself.
+    ray: f32,
+    /// By which what was stored is weighted.
+    stored: f32,
+}
+
+/// The stretch of a ray up to `texels` in the region of its row that begins at texel `first`.
+fn prefix(ray: RowRay, first: f32, texels: f32, steps: Steps) -> Prefix {
+    return Prefix(ray.row, frame.wraps, first, texels, steps.ray, steps.stored);
+}
+
+/// What is scattered into the view ray of `pixel`.
+fn scattered_ray(pixel: vec2<u32>) -> ScatteredRay {
+    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
+    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+    let ray = epipolar_ray(frame, ndc, surface, medium.distance_limit);
+    // The bounds of the nearest slice: those of the next one differ by far less than the series resolves.
+    let slice = slice_from_texel(textureLoad(slices, vec2<u32>(nearest_row(frame, ray.row), 0u), 0));
+    let width = f32(map_size().x);
+    let texels = clamp(width * ray.distance * ray.sine / slice.radius_max, 0.0, width);
+    var row_ray = RowRay(ray.row, 0.0, texels, depth_from_ray(slice, ray));
+    let near = 0.0;
+    let extinction = medium.extinction;
+    // Optical depth of a texel of a ray at right angles to the light.
+    let across = extinction * slice.radius_max / width;
+    let steps = Steps(across / max(ray.sine, 1e-6), across / greatest_sine(slice));
+    var visibility = prefix_colors(prefix(row_ray, 0.0, texels, steps), row_ray.depth);
+
+    let near_epipole = 1.0 - smoothstep(EPIPOLE_TEXELS, 2.0 * EPIPOLE_TEXELS, texels);
+    let samples = select(0u, EPIPOLE_STEPS, near_epipole > 0.0);
+    let direction = perspective_ray(camera, ndc).direction;
+    let marched = marched_light(light, camera.eye, direction, vec2<f32>(near, ray.distance), extinction, samples, 0.5);
+    visibility = mix(visibility, marched, near_epipole);
+
+    let radiance = visibility * in_scattered(medium, light.radiance, ray.cosine, ray.distance - near, 1.0);
+    let mean = dot(visibility, vec3<f32>(1.0 / 3.0));
+    let distance = epipolar_ray(frame, ndc, surface, FARTHEST).distance;
+    return ScatteredRay(min(radiance, vec3<f32>(65504.0)), mean, ndc, distance, ray.cosine);
+}
+
+// ---- scattering/evaluate ----
+
+@group(0) @binding(9) var scattered: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(16, 8)
+fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
+    if all(id.xy < textureDimensions(scattered)) {
+        textureStore(scattered, id.xy, scattered_texel(scattered_ray(id.xy)));
+    }
+}
+
+@vertex
+fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return picture_corner(index);
+}
+
+@fragment
+fn fragment_evaluate(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return scattered_texel(scattered_ray(vec2<u32>(position.xy)));
+}

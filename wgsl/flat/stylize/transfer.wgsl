@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
+// Airlight 0.1.0: stylize/transfer, permutation default
+// summary: Scattered light of every pixel, of any method, as a transfer function has it; or where pixels lie in the function.
+// source: stylized scattering, 4.2; thesis 6.2.2.
+// note: The angle to a light at a point is that at the camera.
+// note: Non-finite values of the scattered light count as 0, such depths as far.
+// binding camera: the camera, any.
+// binding light: the light.
+// binding transfer_function: what is looked up, and what is made of it.
+// binding depth: depth buffer of the picture, a depth format or r32float.
+// binding scattered: what a scattering method wrote: linear RGB radiance, and in alpha the mean visibility 0..1.
+// binding transfer_map: the function, premultiplied linear RGBA, any float format that filters; without PICK.
+// binding transfer_sampler: linear, clamped to the edge; without PICK.
+// binding restyled: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+}
+
+// ---- airlight::core::camera ----
+// summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
+// source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
+
+/// Perspective projection: all view rays leave the eye.
+const PERSPECTIVE: u32 = 0u;
+/// Orthographic projection: view rays are parallel and leave the near plane.
+const ORTHOGRAPHIC: u32 = 1u;
+
+/// A camera, as an engine hands it over. 160 bytes.
+struct Camera {
+    /// View-projection matrix, world to clip.
+    clip_from_world: mat4x4<f32>,
+    /// Its inverse, clip to world.
+    world_from_clip: mat4x4<f32>,
+    /// Position of the eye in the world, metres; unused by an orthographic camera.
+    eye: vec3<f32>,
+    /// Clip depth of the near plane: 0 forward, 1 reversed.
+    near_depth: f32,
+    /// Width and height of the picture in pixels.
+    viewport: vec2<f32>,
+    /// Clip depth of the far plane: 1 forward, 0 reversed.
+    far_depth: f32,
+    /// PERSPECTIVE or ORTHOGRAPHIC.
+    projection: u32,
+}
+
+/// A view ray: world-space origin in metres, unit direction.
+struct Ray {
+    /// Where it starts in the world, metres.
+    origin: vec3<f32>,
+    /// Unit vector, away from the eye.
+    direction: vec3<f32>,
+}
+
+/// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
+fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+/// The view ray through `ndc`, of any camera.
+fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
+    // Values, not branches: some drivers compile a shader anew for every value of a uniform that a branch depends on.
+    let parallel = camera.projection == ORTHOGRAPHIC;
+    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
+    let near = camera.world_from_clip * vec4<f32>(ndc, camera.near_depth, 1.0);
+    let origin = select(camera.eye, near.xyz / select(1.0, near.w, parallel), parallel);
+    // With w = 0 (infinite far plane) far.xyz is the direction itself.
+    return Ray(origin, normalize(far.xyz - select(camera.eye * far.w, near.xyz, parallel)));
+}
+
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+}
+
+// ---- airlight::core::light ----
+// summary: A light, its fall-off and texture, and the clip space of its standard shadow map.
+// source: thesis 4.2.1; a point source seen through a cone and softened by its radius.
+
+/// A light at infinity: all light rays are parallel.
+const DIRECTIONAL: u32 = 0u;
+
+/// A light and its standard shadow map. 192 bytes.
+struct Light {
+    /// World to the shadow map's clip space; affine for a directional light, unused with an array of shadow maps.
+    clip_from_world: mat4x4<f32>,
+    /// Its inverse.
+    world_from_clip: mat4x4<f32>,
+    /// Unit vector TOWARDS a directional light; of a spot, the reverse of the axis along which it shines.
+    direction: vec3<f32>,
+    /// Depth of an empty texel of the shadow map, farthest from the light: 1 forward, 0 reversed.
+    far_depth: f32,
+    /// Linear RGB: for a directional light the irradiance at normal incidence; for one at a point its radiant
+    /// intensity, the irradiance at a distance of one metre.
+    radiance: vec3<f32>,
+    /// DIRECTIONAL, SPOT or POINT.
+    kind: u32,
+    /// Where a spot or point light is, metres.
+    position: vec3<f32>,
+    /// Radius of a spot or point light, metres, positive: nearer to it the fall-off with distance stops.
+    radius: f32,
+    /// Cosines of the half angles inside which a spot shines fully, and outside which not at all.
+    spot_cosines: vec2<f32>,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
+/// Unit vector from `point`, metres in the world, TOWARDS the light; zero where a light at a point is right there.
+fn direction_to_light(light: Light, point: vec3<f32>) -> vec3<f32> {
+    let between = light.position - point;
+    let local = between * inverseSqrt(max(dot(between, between), 1e-30));
+    return select(local, light.direction, light.kind == DIRECTIONAL);
+}
+
+// ---- airlight::core::phase ----
+// summary: Phase functions, normalised to one over the sphere.
+// source: thesis 2.4, Eq. 2.11 (Henyey and Greenstein 1941).
+
+/// 1 / (4 pi), the value of the isotropic phase function, 1/sr.
+const ISOTROPIC: f32 = 0.07957747154594767;
+
+/// The Henyey-Greenstein phase function, 1/sr. `cosine`: of the scattering angle, -1..1;
+/// `g`: mean cosine, clamped to -0.999..0.999, zero is isotropic.
+fn henyey_greenstein(cosine: f32, g: f32) -> f32 {
+    let mean = clamp(g, -0.999, 0.999);
+    // (1 - g)^2 + 2 g (1 - cos) is 1 + g^2 - 2 g cos without the cancellation near the peak.
+    let near = (1.0 - abs(mean)) * (1.0 - abs(mean));
+    let turn = 1.0 - clamp(select(-cosine, cosine, mean >= 0.0), -1.0, 1.0);
+    let inverse = inverseSqrt(near + 2.0 * abs(mean) * turn);
+    return ISOTROPIC * (1.0 - mean * mean) * (inverse * inverse * inverse);
+}
+
+// ---- airlight::core::picture ----
+// summary: One triangle over the whole picture, for passes in fragment form.
+// source: the usual full-screen triangle.
+
+/// Clip-space position of corner `index`, 0..2, of a triangle that covers the picture.
+fn picture_corner(index: u32) -> vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+// ---- airlight::core::ray_depth ----
+// summary: Distance along one view ray from depth-buffer values and back, for any camera, in a few operations each.
+// source: homogeneous unprojection: on a view ray numerator and denominator of the distance are affine in the depth.
+
+/// Distance over depth on one view ray: (along + along_slope x) / (w + w_slope x), x = depth - far_depth.
+struct RayDepth {
+    /// Homogeneous distance at the far plane, metres times w.
+    along: f32,
+    /// Its change per depth; 0 for a perspective camera.
+    along_slope: f32,
+    /// Homogeneous w at the far plane; 0 where that is at infinity.
+    w: f32,
+    /// Its change per depth; 0 for an orthographic camera.
+    w_slope: f32,
+    /// Clip depth of the far plane.
+    far_depth: f32,
+    /// Clip depth of the near plane.
+    near_depth: f32,
+}
+
+/// What turns depths into distances on `ray`, the view ray through `ndc`.
+fn ray_depth(camera: Camera, ray: Ray, ndc: vec2<f32>) -> RayDepth {
+    let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
+    let column = camera.world_from_clip[2];
+    let along = dot(far.xyz - ray.origin * far.w, ray.direction);
+    let slope = dot(column.xyz - ray.origin * column.w, ray.direction);
+    // From the eye the product is the same at every depth: what is left of its slope is rounding.
+    let perspective = camera.projection == PERSPECTIVE;
+    return RayDepth(along, select(slope, 0.0, perspective), far.w, column.w, camera.far_depth, camera.near_depth);
+}
+
+/// Distance in metres along the ray at `depth`, 0..1; at most `limit`, which also stands for infinity.
+fn distance_on_ray(ray: RayDepth, depth: f32, limit: f32) -> f32 {
+    let beyond_far = depth - ray.far_depth;
+    let along = ray.along + ray.along_slope * beyond_far;
+    let w = ray.w + ray.w_slope * beyond_far;
+    let beyond = along >= limit * w;
+    return select(max(along / select(w, 1.0, beyond), 0.0), limit, beyond);
+}
+
+// ---- airlight::stylize::tf_lookup ----
+// summary: Transfer functions: two properties of a view ray are looked up in a texture, which says what its light looks like.
+// source: stylized scattering, 4.2; thesis 6.2.2; X-Toon, Barla, Thollot and Markosian (2006).
+
+/// Property of a ray: its length, 0 at the eye and 1 at the depth limit and beyond.
+const LINEAR_DEPTH: u32 = 1u;
+/// Property of a ray: its angle to the direction towards the light, 0 looking at the light and 1 away from it.
+const LIGHT_ANGLE: u32 = 2u;
+/// Property of a ray: where the light lies in the picture as seen from its pixel; 0 to the right, 1/4 above, up to 1.
+const PICTURE_ANGLE: u32 = 3u;
+/// Property of a ray: mean distance of its lit points, as LINEAR_DEPTH.
+const VISIBLE_DEPTH: u32 = 4u;
+
+/// The function's colour stands for albedo and visibility: it is multiplied by the light's radiance and the phase function.
+const LIGHT: u32 = 1u;
+/// The function's colour is multiplied by the scattered light.
+const SCATTERING: u32 = 2u;
+
+/// The phase function of Henyey and Greenstein.
+const HENYEY_GREENSTEIN: u32 = 1u;
+
+/// How a transfer function is read and what is made of it. 32 bytes.
+struct TransferFunction {
+    /// The property of the ray along x: MEAN_VISIBILITY, LINEAR_DEPTH, LIGHT_ANGLE, PICTURE_ANGLE or VISIBLE_DEPTH.
+    across: u32,
+    /// The property along y.
+    down: u32,
+    /// REPLACE, LIGHT or SCATTERING.
+    mode: u32,
+    /// CONSTANT or HENYEY_GREENSTEIN; the mode SCATTERING has that of the scattered light.
+    phase: u32,
+    /// Length of ray that counts as 1, metres, positive.
+    depth_limit: f32,
+    /// How much of it is shown, 0..1.
+    strength: f32,
+    /// Factor on the function's colours, not negative.
+    brightness: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+}
+
+/// Properties of a view ray.
+struct RayProperties {
+    /// Mean visibility, 0..1.
+    visibility: f32,
+    /// Length, metres.
+    distance: f32,
+    /// View direction times direction towards the light, -1..1.
+    cosine: f32,
+    /// Angle in the picture from its x axis to the direction towards the light, radians, counter-clockwise.
+    picture_angle: f32,
+    /// Mean distance of the lit points, metres.
+    visible_distance: f32,
+}
+
+/// Angle in the picture from its x axis to the direction towards the light at `ndc`, radians, -pi..pi, counter-clockwise;
+/// 0 right at the light. It does not jump where the light passes beside the camera.
+fn picture_angle(camera: Camera, light: Light, ndc: vec2<f32>) -> f32 {
+    let infinite = light.kind == DIRECTIONAL;
+    let place = select(vec4<f32>(light.position, 1.0), vec4<f32>(light.direction, 0.0), infinite);
+    let clip = camera.clip_from_world * place;
+    let towards = (clip.xy - ndc * clip.w) * camera.viewport;
+    let at_light = all(abs(towards) < vec2<f32>(1e-30));
+    return atan2(select(towards.y, 0.0, at_light), select(towards.x, 1.0, at_light));
+}
+
+/// A property of a ray, 0..1. `depth_limit`: metres.
+fn ray_property(property: u32, ray: RayProperties, depth_limit: f32) -> f32 {
+    let limit = clamp(depth_limit, 1e-6, 1e15);
+    let turns = ray.picture_angle * 0.15915494309189535;
+    var value = ray.visibility;
+    value = select(value, ray.distance / limit, property == LINEAR_DEPTH);
+    value = select(value, arc_cosine(ray.cosine) * 0.3183098861837907, property == LIGHT_ANGLE);
+    value = select(value, turns - floor(turns), property == PICTURE_ANGLE);
+    value = select(value, ray.visible_distance / limit, property == VISIBLE_DEPTH);
+    return clamp(finite_or(value, 0.0), 0.0, 1.0);
+}
+
+/// Where a ray lies in the function, 0..1 in x and y.
+fn transfer_position(function: TransferFunction, ray: RayProperties) -> vec2<f32> {
+    return vec2<f32>(
+        ray_property(function.across, ray, function.depth_limit), ray_property(function.down, ray, function.depth_limit)
+    );
+}
+
+/// The function at `position`, 0..1: premultiplied linear RGBA. `map`: any float format that filters; `map_sampler`:
+/// linear, clamped to the edge. Non-finite texels are transparent.
+fn transfer_lookup(map: texture_2d<f32>, map_sampler: sampler, position: vec2<f32>) -> vec4<f32> {
+    let color = textureSampleLevel(map, map_sampler, clamp(position, vec2<f32>(0.0), vec2<f32>(1.0)), 0.0);
+    let rgb = clamp(finite_or_rgb(color.rgb, 0.0), vec3<f32>(0.0), vec3<f32>(65504.0));
+    return vec4<f32>(rgb, clamp(finite_or(color.a, 0.0), 0.0, 1.0));
+}
+
+/// The function's phase function, 1/sr. `cosine`: view direction times direction towards the light.
+fn transfer_phase(function: TransferFunction, cosine: f32) -> f32 {
+    return select(ISOTROPIC, henyey_greenstein(cosine, function.g), function.phase == HENYEY_GREENSTEIN);
+}
+
+/// Scattered light as the function has it: linear RGB radiance. `color`: of the function, premultiplied; `radiance`:
+/// scattered into the ray; `light_radiance`: of the light; `phase`: what `transfer_phase` gives, 1/sr.
+fn stylized(
+    function: TransferFunction, color: vec4<f32>, radiance: vec3<f32>, light_radiance: vec3<f32>, phase: f32
+) -> vec3<f32> {
+    // A constant phase function leaves the colours of REPLACE as they are.
+    var tint = vec3<f32>(phase / ISOTROPIC);
+    tint = select(tint, clamp(light_radiance, vec3<f32>(0.0), vec3<f32>(1e15)) * phase, function.mode == LIGHT);
+    tint = select(tint, radiance, function.mode == SCATTERING);
+    let strength = clamp(function.strength, 0.0, 1.0);
+    let kept = radiance * (1.0 - strength * color.a);
+    let added = color.rgb * tint * (strength * clamp(function.brightness, 0.0, 65504.0));
+    return clamp(kept + added, vec3<f32>(0.0), vec3<f32>(65504.0));
+}
+
+// ---- stylize/transfer ----
+
+@group(0) @binding(0) var<uniform> camera: Camera;
+@group(0) @binding(1) var<uniform> light: Light;
+@group(0) @binding(2) var<uniform> transfer_function: TransferFunction;
+@group(0) @binding(3) var depth: texture_2d<f32>;
+@group(0) @binding(4) var scattered: texture_2d<f32>;
+@group(0) @binding(7) var transfer_map: texture_2d<f32>;
+@group(0) @binding(8) var transfer_sampler: sampler;
+@group(0) @binding(9) var restyled: texture_storage_2d<rgba16float, write>;
+
+/// What the function is asked about a pixel.
+fn pixel_properties(pixel: vec2<u32>) -> RayProperties {
+    let ndc = ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5);
+    let view = view_ray(camera, ndc);
+    let surface = clamp(finite_or(textureLoad(depth, pixel, 0).x, camera.far_depth), 0.0, 1.0);
+    // Every ray that reaches the limit looks the same to the function.
+    let distance = distance_on_ray(ray_depth(camera, view, ndc), surface, clamp(transfer_function.depth_limit, 1e-6, 1e15));
+    let visibility = clamp(finite_or(textureLoad(scattered, pixel, 0).a, 0.0), 0.0, 1.0);
+    let cosine = dot(view.direction, direction_to_light(light, view.origin));
+    var ray = RayProperties(visibility, distance, cosine, picture_angle(camera, light, ndc), 0.0);
+    return ray;
+}
+
+/// Radiance, and mean visibility in alpha, of a pixel.
+fn pixel_light(pixel: vec2<u32>) -> vec4<f32> {
+    let ray = pixel_properties(pixel);
+    let color = transfer_lookup(transfer_map, transfer_sampler, transfer_position(transfer_function, ray));
+    let radiance = clamp(finite_or_rgb(textureLoad(scattered, pixel, 0).rgb, 0.0), vec3<f32>(0.0), vec3<f32>(65504.0));
+    let phase = transfer_phase(transfer_function, ray.cosine);
+    return vec4<f32>(stylized(transfer_function, color, radiance, light.radiance, phase), ray.visibility);
+}
+
+@compute @workgroup_size(16, 8)
+fn transfer(@builtin(global_invocation_id) id: vec3<u32>) {
+    if all(id.xy < textureDimensions(restyled)) {
+        textureStore(restyled, id.xy, pixel_light(id.xy));
+    }
+}
+
+@vertex
+fn vertex_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return picture_corner(index);
+}
+
+@fragment
+fn fragment_transfer(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return pixel_light(vec2<u32>(position.xy));
+}
