@@ -32,11 +32,15 @@ mod scan;
 mod threads;
 
 #[cfg(feature = "command")]
+pub mod abi;
+#[cfg(feature = "command")]
 pub mod check;
 #[cfg(feature = "command")]
 pub mod flat;
 #[cfg(feature = "command")]
 pub mod manifest;
+#[cfg(feature = "command")]
+pub mod vendor;
 
 pub use compose::{Composed, core_capabilities};
 pub use definitions::{Definition, Definitions};

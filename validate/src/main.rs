@@ -3,7 +3,10 @@
 
 mod command;
 
-use airlight_validate::check::{Format, Tool};
+use airlight_validate::{
+    check::{Format, Tool},
+    vendor::Form,
+};
 use clap::{Parser, Subcommand};
 use command::Stop;
 use std::{
@@ -49,6 +52,16 @@ enum Job {
         /// File instead of `DIR/manifest.json`.
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
+        /// Write `DIR/manifest.released.json`, which later manifests are held to, as well.
+        #[arg(long, conflicts_with_all = ["check", "out"])]
+        release: bool,
+    },
+    /// Tell compatible from breaking changes of two manifests; fail where a breaking one comes without a new version.
+    Abi {
+        /// The older `manifest.json`.
+        old: PathBuf,
+        /// The newer one.
+        new: PathBuf,
     },
     /// Print a pass as stand-alone WGSL.
     Flat {
@@ -57,6 +70,28 @@ enum Job {
         pass: String,
         /// Folder with `<system>/<module>.wgsl`; default `wgsl` if it is here, else the built-in library.
         dir: Option<PathBuf>,
+    },
+    /// Copy passes with what they need, licences and a lock file into a folder.
+    Vendor {
+        /// The folder; made where there is none.
+        dir: PathBuf,
+        /// A pass with all its permutations, or one permutation of it; may be given several times.
+        #[arg(long = "pass", required = true, value_name = "SYSTEM/PASS[:PERMUTATION]")]
+        passes: Vec<String>,
+        /// Form of the copies.
+        #[arg(long, value_enum, default_value_t)]
+        form: Form,
+        /// Overwrite files that vendoring did not write, or that were changed since.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Tell what has become of a vendored folder: unmodified, locally changed, missing, unknown, outdated.
+    Verify {
+        /// The folder, with its `airlight.lock.json`.
+        dir: PathBuf,
+        /// Form of the report.
+        #[arg(long, value_enum, default_value_t)]
+        format: Format,
     },
     /// Write every permutation of every pass as stand-alone WGSL to `DIR/flat`.
     Flatten {
@@ -78,8 +113,11 @@ fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|_| {}));
     let done = std::panic::catch_unwind(|| match arguments.command {
         Job::Check { dir, format, require, quiet } => command::check::run(dir, format, require, quiet),
-        Job::Manifest { dir, check, out } => command::manifest::run(&dir, check, out),
+        Job::Manifest { dir, check, out, release } => command::manifest::run(&dir, check, out, release),
+        Job::Abi { old, new } => command::abi::run(&old, &new),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
+        Job::Vendor { dir, passes, form, force } => command::vendor::run(&dir, &passes, form, force),
+        Job::Verify { dir, format } => command::verify::run(&dir, format),
         Job::Flatten { dir, check, out } => command::flatten::run(&dir, check, out),
     });
     let (message, code) = match done {

@@ -46,7 +46,12 @@ pub fn render(library: &Library) -> Result<String, Error> {
     }
     let format = 1_u32;
     let passes = Node::List(passes);
-    let document = Node::object([("format", format.into()), ("modules", modules), ("passes", passes)]);
+    let document = Node::object([
+        ("format", format.into()),
+        ("version", env!("CARGO_PKG_VERSION").into()),
+        ("modules", modules),
+        ("passes", passes),
+    ]);
     Ok(document.document())
 }
 

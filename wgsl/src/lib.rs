@@ -53,6 +53,13 @@ pub struct System {
     pub permutations: &'static str,
 }
 
+/// File names and texts of the licences; a copy of a shader may go by any of them.
+pub const LICENCES: [(&str, &str); 3] = [
+    ("LICENSE-MIT", include_str!("../LICENSE-MIT")),
+    ("LICENSE-APACHE", include_str!("../LICENSE-APACHE")),
+    ("UNLICENSE", include_str!("../UNLICENSE")),
+];
+
 macro_rules! modules {
     ($($system:ident :: $module:ident [$($import:literal),*]),* $(,)?) => {
         /// Every algorithm module, each after the modules that it imports.

@@ -9,7 +9,7 @@ use std::{
     process::ExitCode,
 };
 
-pub(crate) fn run(dir: &Path, check: bool, out: Option<PathBuf>) -> Result<ExitCode, Stop> {
+pub(crate) fn run(dir: &Path, check: bool, out: Option<PathBuf>, release: bool) -> Result<ExitCode, Stop> {
     let library = library(Some(dir)).map_err(Stop::from)?;
     let text = manifest::render(&library).map_err(|error| Stop::Failure(in_folder(dir, &error)))?;
     let file = out.unwrap_or_else(|| dir.join("manifest.json"));
@@ -24,7 +24,10 @@ pub(crate) fn run(dir: &Path, check: bool, out: Option<PathBuf>) -> Result<ExitC
             Err(error) => Err(Stop::Failure(format!("cannot read {}: {error}", file.display()))),
         };
     }
-    write_whole(&file, &text)
-        .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", file.display())))?;
+    let released = release.then(|| dir.join("manifest.released.json"));
+    for file in [Some(file), released].into_iter().flatten() {
+        write_whole(&file, &text)
+            .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", file.display())))?;
+    }
     Ok(ExitCode::SUCCESS)
 }

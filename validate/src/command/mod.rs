@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The subcommands, and what they share: the library that is read, files that are written, errors.
 
+pub(crate) mod abi;
 pub(crate) mod check;
 pub(crate) mod flat;
 pub(crate) mod flatten;
 pub(crate) mod manifest;
+pub(crate) mod vendor;
+pub(crate) mod verify;
 
 use airlight_validate::{Error, Library};
 use std::{

@@ -112,7 +112,7 @@ pub fn sync_files(
 }
 
 /// The `.wgsl` files under a folder, relative to it, with `/`; none where there is no folder.
-fn shaders(folder: &Path) -> io::Result<BTreeSet<String>> {
+pub(crate) fn shaders(folder: &Path) -> io::Result<BTreeSet<String>> {
     let mut found = BTreeSet::new();
     let mut open = vec![PathBuf::new()];
     while let Some(part) = open.pop() {

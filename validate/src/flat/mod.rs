@@ -20,6 +20,7 @@ use crate::{
     locate,
 };
 pub use files::{Kept, list, render, sync, sync_files};
+pub(crate) use files::{name as file_name, shaders};
 use link::{Failure, Linked, link};
 use std::fmt::Write as _;
 pub use written::write;
