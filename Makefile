@@ -50,11 +50,16 @@ bench: driver build ## Ratios against baselines, interleaved in one run
 	$(AIRLIGHT) bench
 
 .PHONY: bless
-bless: driver build ## Accept changed snapshots and write the manifest; then look at the diff
+bless: driver build ## Accept changed snapshots, write the manifest and flat files; then look at the diff
 	$(VALIDATE) manifest wgsl
+	$(VALIDATE) flatten wgsl
 	INSTA_UPDATE=always AIRLIGHT_BLESS=1 cargo test $(CARGO_FLAGS)
 	# insta notes the path of the source as this machine has it.
 	sed -i.bak "1,6{/^source: /d;}" tests/tests/snapshots/*.snap && rm -f tests/tests/snapshots/*.bak
+
+.PHONY: release-abi
+release-abi: build ## Hold later manifests to this one: when a version is published
+	$(VALIDATE) manifest --release wgsl
 
 .PHONY: docs
 docs: rust ## The book, in docs/book, and the API documentation, in target/doc

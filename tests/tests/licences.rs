@@ -195,3 +195,10 @@ fn folders_are_found_as_paths_of_their_own() {
     assert!(!names_folder(b"docs/srv/build/x", b"/srv/build"));
     assert!(!names_folder(b"", b"/srv/build"));
 }
+
+#[test]
+fn the_shaders_carry_the_licences_of_the_repository() {
+    for (file, text) in airlight_wgsl::LICENCES {
+        assert_eq!(text, std::fs::read_to_string(root().join(file)).expect("a licence"), "{file}");
+    }
+}

@@ -51,8 +51,10 @@ pub(super) fn judge(
             }
             "needs/features/*" if removed => (Compatible, "fewer devices are excluded"),
             "needs/features/*" => (Breaking, "a device may lack it"),
-            "needs/limits/*" if !greater() => (Compatible, "less is asked of the device"),
-            "needs/limits/*" => (Breaking, "a device may not reach it"),
+            _ if part.starts_with("needs/limits/") && !greater() => {
+                (Compatible, "less is asked of the device")
+            }
+            _ if part.starts_with("needs/limits/") => (Breaking, "a device may not reach it"),
             "entry_points/*" if added => (Compatible, "nobody calls it yet"),
             "entry_points/*" => (Breaking, "pipelines are made by its name"),
             "entry_points/*/bindings/*" if added => (Breaking, "a layout for the entry point lacks it"),
