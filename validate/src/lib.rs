@@ -28,6 +28,7 @@ mod names;
 mod permutations;
 mod reflect;
 mod scan;
+pub mod wesl;
 
 #[cfg(feature = "command")]
 pub mod check;
