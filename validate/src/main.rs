@@ -58,6 +58,14 @@ enum Job {
         /// Folder with `<system>/<module>.wgsl`; default `wgsl` if it is here, else the built-in library.
         dir: Option<PathBuf>,
     },
+    /// Write the modules that hold no bindings as a WESL package.
+    Wesl {
+        /// Folder with `<system>/<module>.wgsl`; default `wgsl` if it is here, else the built-in library.
+        dir: Option<PathBuf>,
+        /// Folder of the package; its name is that of the package.
+        #[arg(long, value_name = "DIR", default_value = "airlight")]
+        out: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -68,6 +76,7 @@ fn main() -> ExitCode {
         Job::Check { dir, format, require, quiet } => command::check::run(dir, format, require, quiet),
         Job::Manifest { dir, check, out } => command::manifest::run(&dir, check, out),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
+        Job::Wesl { dir, out } => command::wesl::run(dir, &out),
     });
     let (message, code) = match done {
         Ok(Ok(code)) => return code,

@@ -4,6 +4,7 @@
 pub(crate) mod check;
 pub(crate) mod flat;
 pub(crate) mod manifest;
+pub(crate) mod wesl;
 
 use airlight_validate::{Error, Library};
 use std::{
