@@ -56,6 +56,11 @@ bless: driver build ## Accept changed snapshots and write the manifest; then loo
 	# insta notes the path of the source as this machine has it.
 	sed -i.bak "1,6{/^source: /d;}" tests/tests/snapshots/*.snap && rm -f tests/tests/snapshots/*.bak
 
+.PHONY: npm
+npm: ## The npm package, packed and installed: in node, for TypeScript, and in headless Chromium
+	@command -v npm >/dev/null || { echo "npm is not on the PATH; install node 20 or later" >&2; exit 1; }
+	cd tests/browser && npm ci --no-audit --no-fund && node --test --test-concurrency=1 package/
+
 .PHONY: docs
 docs: rust ## The book, in docs/book, and the API documentation, in target/doc
 	@if command -v mdbook >/dev/null; then mdbook build docs; \
