@@ -12,7 +12,8 @@ const HEAD = "// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense\n// Gen
 function read(file) {
     const path = join(ROOT, file);
     if (existsSync(path)) return readFileSync(path, "utf8");
-    console.error(`airlight-wgsl: ${path} is missing; write it with "airlight-validate flatten wgsl" or "airlight-validate manifest wgsl"`);
+    const job = file.startsWith("flat/") ? "flatten" : "manifest";
+    console.error(`airlight-wgsl: ${path} is missing; write it with "airlight-validate ${job} wgsl"`);
     process.exit(1);
 }
 

@@ -359,3 +359,8 @@ passes! {
 }
 
 systems![core, transmittance, ambient, painterly, inverse, splatting, scattering, stylize];
+
+/// The examples of the package's page.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -36,7 +36,8 @@ async function compileAll() {
     let compiled = 0;
     for (const { name, permutations } of passes) {
         for (const permutation of permutations) {
-            const found = await errors(await airlight.flat(name, permutation.name), permutation.name === "default" ? core : rich);
+            const code = await airlight.flat(name, permutation.name);
+            const found = await errors(code, permutation.name === "default" ? core : rich);
             if (found.length > 0) wrong.push(`${name}:${permutation.name}: ${found.join("; ")}`);
             compiled += 1;
         }
