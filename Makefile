@@ -61,6 +61,11 @@ bless: driver build ## Accept changed snapshots, write the manifest and flat fil
 release-abi: build ## Hold later manifests to this one: when a version is published
 	$(VALIDATE) manifest --release wgsl
 
+.PHONY: npm
+npm: ## The npm package, packed and installed: in node, for TypeScript, and in headless Chromium
+	@command -v npm >/dev/null || { echo "npm is not on the PATH; install node 20 or later" >&2; exit 1; }
+	cd tests/browser && npm ci --no-audit --no-fund && node --test --test-concurrency=1 package/
+
 .PHONY: docs
 docs: rust ## The book, in docs/book, and the API documentation, in target/doc
 	@if command -v mdbook >/dev/null; then mdbook build docs; \

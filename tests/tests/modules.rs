@@ -25,7 +25,7 @@ fn on_disk() -> [BTreeSet<String>; 3] {
     let [mut systems, mut modules, mut passes] = [const { BTreeSet::new() }; 3];
     for system in names(&wgsl()) {
         let folder = wgsl().join(&system);
-        if !folder.is_dir() || ["src", "flat"].contains(&system.as_str()) {
+        if !folder.is_dir() || ["src", "flat", "npm"].contains(&system.as_str()) {
             continue;
         }
         let shaders = |folder: &Path| names(folder).into_iter().filter(|name| name.ends_with(".wgsl"));

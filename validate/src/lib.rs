@@ -30,6 +30,7 @@ mod reflect;
 mod scan;
 #[cfg(feature = "command")]
 mod threads;
+pub mod wesl;
 
 #[cfg(feature = "command")]
 pub mod abi;

@@ -105,6 +105,14 @@ enum Job {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Write the modules that hold no bindings as a WESL package.
+    Wesl {
+        /// Folder with `<system>/<module>.wgsl`; default `wgsl` if it is here, else the built-in library.
+        dir: Option<PathBuf>,
+        /// Folder of the package; its name is that of the package.
+        #[arg(long, value_name = "DIR", default_value = "airlight")]
+        out: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -119,6 +127,7 @@ fn main() -> ExitCode {
         Job::Vendor { dir, passes, form, force } => command::vendor::run(&dir, &passes, form, force),
         Job::Verify { dir, format } => command::verify::run(&dir, format),
         Job::Flatten { dir, check, out } => command::flatten::run(&dir, check, out),
+        Job::Wesl { dir, out } => command::wesl::run(dir, &out),
     });
     let (message, code) = match done {
         Ok(Ok(code)) => return code,

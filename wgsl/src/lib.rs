@@ -9,12 +9,65 @@
 //! *pass* ([`PASSES`]) holds bindings, entry points and loops over texels. All are written for `naga_oil`; any version of its `Composer` is filled
 //! in five lines, because the modules are listed so that each follows what it imports:
 //!
-//! ```ignore
+//! ```
+//! # #[derive(Default)]
+//! # struct ComposableModuleDescriptor<'a> { source: &'a str, file_path: &'a str, as_name: Option<String> }
+//! # #[derive(Default)]
+//! # struct Composer { paths: std::collections::BTreeSet<String> }
+//! # impl Composer {
+//! #     fn add_composable_module(&mut self, module: ComposableModuleDescriptor) -> Result<(), String> {
+//! #         let path = |line: &str| line.split_whitespace().nth(1).map(str::to_owned);
+//! #         let own = module.source.lines().find(|line| line.starts_with("#define_import_path")).and_then(path);
+//! #         let listed = airlight_wgsl::MODULES.iter().find(|other| other.file == module.file_path);
+//! #         if let Some(late) = listed.into_iter().flat_map(|m| m.imports).find(|import| !self.paths.contains(**import)) {
+//! #             return Err(format!("{} comes before {late}", module.file_path));
+//! #         }
+//! #         self.paths.insert(own.ok_or("no path")?);
+//! #         Ok(())
+//! #     }
+//! # }
+//! # let mut composer = Composer::default();
 //! for module in airlight_wgsl::MODULES {
 //!     composer.add_composable_module(ComposableModuleDescriptor {
 //!         source: module.source, file_path: module.file, ..Default::default()
 //!     })?;
 //! }
+//! # assert_eq!(composer.paths.len(), airlight_wgsl::MODULES.len());
+//! # Ok::<(), String>(())
+//! ```
+//!
+//! An engine that wants one function adds its module and what that needs, in the same order:
+//!
+//! ```
+//! use airlight_wgsl::MODULES;
+//! use std::collections::BTreeSet;
+//!
+//! let mut wanted = BTreeSet::from(["airlight::core::jitter"]);
+//! // Backwards, so that whoever imports a module was seen before it.
+//! for module in MODULES.iter().rev() {
+//!     if wanted.contains(module.path) {
+//!         wanted.extend(module.imports);
+//!     }
+//! }
+//! let files: Vec<&str> = MODULES.iter().filter(|m| wanted.contains(m.path)).map(|m| m.file).collect();
+//! assert_eq!(files, ["core/finite.wgsl", "core/jitter.wgsl"]);
+//! ```
+//!
+//! A pass is composed with one of its sets of definitions, from its system's `permutations`:
+//!
+//! ```
+//! use airlight_wgsl::{PASSES, SYSTEMS};
+//!
+//! let pass = PASSES.iter().find(|pass| pass.name == "scattering/filter").expect("a pass of this version");
+//! let system = SYSTEMS.iter().find(|system| system.name == "scattering").expect("a system of this version");
+//! // A pass begins a paragraph; `+ name: DEFINITION DEFINITION=VALUE` are its sets.
+//! let own = system.permutations.split("\n\n").find_map(|text| {
+//!     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+//!     (lines.next() == Some("filter")).then(|| lines.collect::<Vec<_>>())
+//! });
+//! let own = own.expect("every pass is listed");
+//! assert_eq!(own[0], "+ default: BASES=32 BASES_PER_THREAD=8");
+//! assert!(pass.source.contains("#{BASES}"));
 //! ```
 //!
 //! With the feature `flat`, `FLAT` holds every permutation of every pass as one file without directives, for
@@ -360,3 +413,8 @@ passes! {
 }
 
 systems![core, transmittance, ambient, painterly, inverse, splatting, scattering, stylize];
+
+/// The examples of the package's page.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -8,6 +8,7 @@ pub(crate) mod flatten;
 pub(crate) mod manifest;
 pub(crate) mod vendor;
 pub(crate) mod verify;
+pub(crate) mod wesl;
 
 use airlight_validate::{Error, Library};
 use std::{
