@@ -45,6 +45,20 @@ check: build ## Every shader permutation through both compilers and all back end
 	fi; \
 	set -x; $(VALIDATE) check wgsl $${require:+--require "$$require"}
 
+# Recorded with the tests of snapshots, repeated in a browser.
+.PHONY: portability
+portability: driver rust ## Every pass of the snapshots again, from its flat file, in headless Chromium
+	@command -v node >/dev/null || { echo "portability: node is not on the PATH; install Node.js 20 or later" >&2; exit 1; }
+	@test -x "$${CHROMIUM:-/usr/bin/chromium}" || { echo "portability: there is no Chromium; install it, or set CHROMIUM to its path" >&2; exit 1; }
+	cd tests/browser && npm ci --silent --no-audit --no-fund
+	cd tests/browser && node --test portability/portability.test.js
+	rm -rf target/portability
+	cargo test $(CARGO_FLAGS) --test snapshots --test snapshots_ambient --no-run
+	for test in snapshots snapshots_ambient; do \
+	    AIRLIGHT_CAPTURE="$(CURDIR)/target/portability/$$test" cargo test --quiet $(CARGO_FLAGS) --test $$test || exit 1; \
+	done
+	node tests/browser/portability/run.js
+
 .PHONY: bench
 bench: driver build ## Ratios against baselines, interleaved in one run
 	$(AIRLIGHT) bench

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The adapter, the device, the queue.
 
+use crate::pass::watch::Watcher;
 use std::sync::{Arc, Mutex};
 
 /// Why there is no device, or why work on it failed.
@@ -41,6 +42,7 @@ pub struct Gpu {
     /// The limits requested from it.
     pub limits: wgpu::Limits,
     uncaptured: Arc<Mutex<Option<String>>>,
+    watcher: Option<Arc<dyn Watcher>>,
 }
 
 impl Gpu {
@@ -80,7 +82,18 @@ impl Gpu {
             }
         }));
         let limits = device.limits();
-        Self { adapter, device, queue, limits, uncaptured }
+        Self { adapter, device, queue, limits, uncaptured, watcher: None }
+    }
+
+    /// Shows `watcher` all passes that are built and recorded from now on.
+    #[must_use]
+    pub fn watched_by(mut self, watcher: Arc<dyn Watcher>) -> Self {
+        self.watcher = Some(watcher);
+        self
+    }
+
+    pub(crate) fn watcher(&self) -> Option<&Arc<dyn Watcher>> {
+        self.watcher.as_ref()
     }
 
     /// A new command encoder.
@@ -94,6 +107,9 @@ impl Gpu {
     /// [`GpuError::Refused`] with the first error since the last call.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<(), GpuError> {
         self.queue.submit([encoder.finish()]);
+        if let Some(watcher) = &self.watcher {
+            watcher.submitted(self);
+        }
         self.check()
     }
 

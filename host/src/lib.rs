@@ -7,6 +7,8 @@
 //! [`splatting`], [`stylize`], [`transmittance`].
 
 pub mod ambient;
+#[cfg(feature = "capture")]
+pub mod capture;
 #[cfg(feature = "command")]
 pub mod command;
 pub mod core;
@@ -32,7 +34,9 @@ pub mod transmittance;
 pub use airlight_validate as validate;
 pub use gpu::{Gpu, GpuError};
 pub use out_of_range::OutOfRange;
-pub use pass::{Bound, Pass, PassError, RenderStages, Resource};
-pub use resource::{Buffer, Sampler, Texture};
+pub use pass::{
+    Bound, ColorTarget, DepthTarget, Draw, DrawExtent, Pass, PassError, RenderStages, Resource, watch,
+};
+pub use resource::{Buffer, Part, Sampler, Texture};
 pub use shaders::Shaders;
 pub use stage::{Lighting, PartShadows, Setting, Stage, StageError, light_texture};

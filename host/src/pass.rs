@@ -4,16 +4,20 @@
 mod bind;
 mod build;
 mod error;
-mod target;
+mod render;
+pub mod watch;
 
 pub use bind::{Bound, Resource};
 pub use build::RenderStages;
 pub use error::PassError;
-pub(crate) use target::begin_target;
+pub(crate) use render::Render;
+pub use render::{ColorTarget, DepthTarget, Draw, DrawExtent};
 
 use crate::gpu::GpuError;
 use crate::resource::{Buffer, Texture};
 use airlight_validate::Binding;
+use std::sync::Arc;
+use watch::{Call, Groups, Run, Watched};
 
 struct ComputeEntry {
     name: String,
@@ -32,6 +36,7 @@ pub struct Pass {
     bindings: Vec<Binding>,
     layout: wgpu::BindGroupLayout,
     pipelines: Pipelines,
+    watched: Option<Arc<Watched>>,
 }
 
 impl Pass {
@@ -41,7 +46,7 @@ impl Pass {
             && let Some(entry) = entries.first()
         {
             let groups = std::array::from_fn(|axis| size[axis].div_ceil(entry.workgroup[axis].max(1)));
-            record(encoder, &entry.pipeline, bound, groups);
+            self.record(encoder, entry, bound, Groups::Direct(groups));
         }
     }
 
@@ -56,7 +61,7 @@ impl Pass {
         entry_point: &str,
         groups: [u32; 3],
     ) -> Result<(), PassError> {
-        record(encoder, &self.entry(entry_point)?.pipeline, bound, groups);
+        self.record(encoder, self.entry(entry_point)?, bound, Groups::Direct(groups));
         Ok(())
     }
 
@@ -71,11 +76,7 @@ impl Pass {
         entry_point: &str,
         (groups, offset): (&Buffer, u64),
     ) -> Result<(), PassError> {
-        let entry = self.entry(entry_point)?;
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&entry.pipeline);
-        pass.set_bind_group(0, &bound.group, &[]);
-        pass.dispatch_workgroups_indirect(&groups.raw, offset);
+        self.record(encoder, self.entry(entry_point)?, bound, Groups::Indirect(groups, offset));
         Ok(())
     }
 
@@ -96,26 +97,41 @@ impl Pass {
 
     /// Records a pass built by [`Pass::pictures`] over all pixels of its targets, which have one size.
     pub fn fill_all(&self, encoder: &mut wgpu::CommandEncoder, bound: &Bound, targets: &[&Texture]) {
-        let ops =
-            wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
-        let attachments: Vec<_> = targets
-            .iter()
-            .map(|target| {
-                Some(wgpu::RenderPassColorAttachment {
-                    view: &target.view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops,
-                })
-            })
-            .collect();
-        let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(&self.name),
-            color_attachments: &attachments,
-            ..Default::default()
-        });
-        self.set(&mut render, bound);
+        let colors = targets.iter().map(|target| ColorTarget::cleared(target, wgpu::Color::BLACK)).collect();
+        let mut render = Render::new(encoder, colors, None);
+        render.set(self, bound);
         render.draw(0..3, 0..1);
+    }
+
+    fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        entry: &ComputeEntry,
+        bound: &Bound,
+        groups: Groups<'_>,
+    ) {
+        let mut record = |encoder: &mut wgpu::CommandEncoder| {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&entry.pipeline);
+            pass.set_bind_group(0, &bound.group, &[]);
+            match groups {
+                Groups::Direct([x, y, z]) => pass.dispatch_workgroups(x, y, z),
+                Groups::Indirect(buffer, offset) => pass.dispatch_workgroups_indirect(&buffer.raw, offset),
+            }
+        };
+        match self.watched.as_ref().zip(self.call(bound)) {
+            None => record(encoder),
+            Some((watched, call)) => {
+                let run = Run::Compute { call: &call, entry_point: &entry.name, groups };
+                watched.watcher.run(encoder, &run, &mut record);
+            }
+        }
+    }
+
+    /// What a watcher is shown of a use of this pass, if there is one.
+    fn call(&self, bound: &Bound) -> Option<Call> {
+        let (shader, pass) = (self.watched.as_ref()?.shader, self.name.clone());
+        Some(Call { shader, pass, resources: bound.held.clone()? })
     }
 
     /// Sets the render pipeline and its resources; the caller draws.
@@ -125,18 +141,6 @@ impl Pass {
             render.set_bind_group(0, &bound.group, &[]);
         }
     }
-}
-
-fn record(
-    encoder: &mut wgpu::CommandEncoder,
-    pipeline: &wgpu::ComputePipeline,
-    bound: &Bound,
-    groups: [u32; 3],
-) {
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, &bound.group, &[]);
-    pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
 }
 
 /// The error that a scope caught. On native back ends it is known at once; a browser reports it as uncaptured later.

@@ -8,7 +8,7 @@ mod texture;
 
 pub use buffer::Buffer;
 pub use sampler::Sampler;
-pub use texture::Texture;
+pub use texture::{Part, Texture};
 
 use crate::gpu::{Gpu, GpuError};
 

@@ -66,9 +66,9 @@ impl GeometryPass {
         let passes = &self.passes[usize::from(camera.is_reversed())];
         for (pass, image) in passes.iter().zip([&geometry.normals, &geometry.albedos]) {
             let bound = pass.bind(gpu, &[("camera", (&uniform).into())])?;
-            let color = (&image.view, None, wgpu::Color::TRANSPARENT);
-            let mut render = begin(&mut encoder, Some(color), &geometry.depth.view, camera.far_depth);
-            pass.set(&mut render, &bound);
+            let color = (image, None, wgpu::Color::TRANSPARENT);
+            let mut render = begin(&mut encoder, Some(color), &geometry.depth, camera.far_depth);
+            render.set(pass, &bound);
             meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
         }
         gpu.submit(encoder)?;

@@ -4,7 +4,7 @@
 use super::{Camera, Light, POINT, ShadowViews};
 use crate::data::Mesh;
 use crate::gpu::Gpu;
-use crate::pass::{Pass, PassError, RenderStages, Resource};
+use crate::pass::{ColorTarget, DepthTarget, Pass, PassError, Render, RenderStages, Resource};
 use crate::resource::{Buffer, Sampler, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Composed;
@@ -63,10 +63,9 @@ impl MeshBuffers {
     }
 
     /// Draws the mesh as the instance `instance`.
-    pub(crate) fn draw(&self, render: &mut wgpu::RenderPass<'_>, instance: u32) {
-        render.set_vertex_buffer(0, self.vertices.raw.slice(..));
-        render.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
-        render.draw_indexed(0..self.count, 0, instance..instance + 1);
+    pub(crate) fn draw(&self, render: &mut Render<'_>, instance: u32) {
+        render.set_mesh(&self.vertices, &self.indices);
+        render.draw_indexed(0..self.count, instance..instance + 1);
     }
 }
 
@@ -201,8 +200,8 @@ impl Raster {
         shadow_map: &Texture,
     ) -> Result<(), PassError> {
         let bound = self.shadow.bind(gpu, &[("light", light.into())])?;
-        let mut render = begin(encoder, None, &shadow_map.view, 1.0);
-        self.shadow.set(&mut render, &bound);
+        let mut render = begin(encoder, None, shadow_map, 1.0);
+        render.set(&self.shadow, &bound);
         meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
         Ok(())
     }
@@ -222,8 +221,8 @@ impl Raster {
     ) -> Result<(), PassError> {
         let bound = self.shadow_array.bind(gpu, &[("shadow_views", shadow_views.into())])?;
         for layer in 0..count.min(shadow_maps.size()[2]) {
-            let mut render = begin(encoder, None, &shadow_maps.layer(layer), 1.0);
-            self.shadow_array.set(&mut render, &bound);
+            let mut render = begin(encoder, None, &shadow_maps.of_layer(layer), 1.0);
+            render.set(&self.shadow_array, &bound);
             meshes.iter().for_each(|mesh| mesh.draw(&mut render, layer));
         }
         Ok(())
@@ -307,13 +306,13 @@ impl Raster {
         let background = passes.background.bind_known(gpu, &resources)?;
         let lit = passes.surface.bind_known(gpu, &resources)?;
         let color = match &samples_of_surface {
-            Some(samples) => (&samples.view, Some(&pictures.surface.view), wgpu::Color::BLACK),
-            None => (&pictures.surface.view, None, wgpu::Color::BLACK),
+            Some(samples) => (samples, Some(&pictures.surface), wgpu::Color::BLACK),
+            None => (&pictures.surface, None, wgpu::Color::BLACK),
         };
-        let mut render = begin(&mut encoder, Some(color), &pictures.depth.view, camera.far_depth);
-        passes.background.set(&mut render, &background);
+        let mut render = begin(&mut encoder, Some(color), &pictures.depth, camera.far_depth);
+        render.set(&passes.background, &background);
         render.draw(0..3, 0..1);
-        passes.surface.set(&mut render, &lit);
+        render.set(&passes.surface, &lit);
         meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
         drop(render);
         gpu.submit(encoder)?;
@@ -336,31 +335,14 @@ pub struct Pictures {
 /// A render pass that clears its targets, depth to `far_depth`. `color`: the target, what it is resolved into, what it is cleared to.
 pub(crate) fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
-    color: Option<(&wgpu::TextureView, Option<&wgpu::TextureView>, wgpu::Color)>,
-    depth: &wgpu::TextureView,
+    color: Option<(&Texture, Option<&Texture>, wgpu::Color)>,
+    depth: &Texture,
     far_depth: f32,
-) -> wgpu::RenderPass<'a> {
-    let color = color.map(|(view, resolve_target, clear)| wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target,
-        ops: wgpu::Operations {
-            load: wgpu::LoadOp::Clear(clear),
-            // Samples are of no use once they are resolved.
-            store: if resolve_target.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
-        },
+) -> Render<'a> {
+    let color = color.map(|(texture, resolve, clear)| ColorTarget {
+        resolve: resolve.cloned(),
+        ..ColorTarget::cleared(texture, clear)
     });
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: None,
-        color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: depth,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(far_depth),
-                store: wgpu::StoreOp::Store,
-            }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
-    })
+    let depth = DepthTarget { texture: depth.clone(), far_depth };
+    Render::new(encoder, color.into_iter().collect(), Some(depth))
 }

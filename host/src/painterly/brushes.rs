@@ -128,17 +128,9 @@ impl Brushes {
             }
         }
         let dimension = wgpu::TextureViewDimension::D2Array;
-        let view = raw
-            .create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
-        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            mipmap_filter: wgpu::MipmapFilterMode::Linear,
-            ..Default::default()
-        });
         Ok(Self {
-            texture: Texture { raw, view, dimension },
-            sampler: Sampler { raw: sampler, comparison: false },
+            texture: Texture::whole(raw, dimension),
+            sampler: Sampler::linear_levels(gpu),
             mean_opacities,
         })
     }

@@ -6,7 +6,7 @@ use super::stroke_passes::{StrokePasses, TARGET};
 use super::{Brushes, Orientation, PainterlyStyle, Stroke, StrokeCounts, StrokeError, StrokeFrame};
 use crate::core::Camera;
 use crate::gpu::Gpu;
-use crate::pass::{Pass, Resource, begin_target};
+use crate::pass::{Pass, Render, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use glam::{Mat4, Vec2, Vec3};
@@ -321,9 +321,9 @@ impl Strokes {
         arguments: u64,
     ) {
         let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
-        let mut render = begin_target(encoder, target, load);
-        pass.set(&mut render, bound);
-        render.draw_indirect(&self.counts.raw, arguments);
+        let mut render = Render::onto(encoder, target, load);
+        render.set(pass, bound);
+        render.draw_indirect(&self.counts, arguments);
     }
 
     fn next_frame(&self, step: &StrokeStep) -> Result<StrokeFrame, StrokeError> {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Resources bound by name: the layout of a pass's bind group, and groups of that layout.
 
+use super::watch::Held;
 use super::{Pass, PassError, caught};
 use crate::gpu::Gpu;
 use crate::layout::{kind_text, layout_entry, mismatch};
 use crate::resource::{Buffer, Sampler, Texture};
 use airlight_validate::{Binding, Reflection};
+use std::sync::Arc;
 
 /// A resource to bind.
 #[derive(Clone, Copy)]
@@ -36,9 +38,21 @@ impl<'a> From<&'a Sampler> for Resource<'a> {
     }
 }
 
+impl Resource<'_> {
+    fn held(self) -> Held {
+        match self {
+            Self::Buffer(buffer) => Held::Buffer(buffer.clone()),
+            Self::Texture(texture) => Held::Texture(texture.clone()),
+            Self::Sampler(sampler) => Held::Sampler(sampler.clone()),
+        }
+    }
+}
+
 /// Resources bound to a pass.
 pub struct Bound {
     pub(super) group: wgpu::BindGroup,
+    /// What is bound, on a device that is watched.
+    pub(super) held: Option<Arc<[(Binding, Held)]>>,
 }
 
 impl Pass {
@@ -80,6 +94,7 @@ impl Pass {
     /// [`PassError`] for a missing or ill-typed name.
     pub fn bind_known(&self, gpu: &Gpu, resources: &[(&str, Resource<'_>)]) -> Result<Bound, PassError> {
         let mut entries = Vec::new();
+        let mut held = Vec::new();
         for binding in &self.bindings {
             let found = resources.iter().find(|(name, _)| *name == binding.name);
             let Some((_, resource)) = found else {
@@ -97,6 +112,9 @@ impl Pass {
                     given,
                 });
             }
+            if self.watched.is_some() {
+                held.push((binding.clone(), resource.held()));
+            }
             entries.push(wgpu::BindGroupEntry {
                 binding: binding.binding,
                 resource: match resource {
@@ -113,7 +131,7 @@ impl Pass {
             entries: &entries,
         });
         caught(scope)?;
-        Ok(Bound { group })
+        Ok(Bound { group, held: self.watched.is_some().then(|| held.into()) })
     }
 }
 

@@ -2,11 +2,13 @@
 //! Passes made from composed shaders: compute and render pipelines with their layouts.
 
 use super::bind::layouts;
+use super::watch::{Shape, Watched};
 use super::{ComputeEntry, Pass, PassError, Pipelines, caught};
 use crate::gpu::Gpu;
 use crate::shaders::Shaders;
 use airlight_validate::{Composed, Definitions, Stage};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// How a render pipeline is made from the entry points of a pass.
 pub struct RenderStages<'a> {
@@ -75,7 +77,8 @@ impl Pass {
             })
             .collect();
         caught(scope)?;
-        Ok(Self { name: composed.pass.clone(), bindings, layout, pipelines: Pipelines::Compute(pipelines) })
+        let (name, watched) = (composed.pass.clone(), watched(gpu, composed, None));
+        Ok(Self { name, bindings, layout, pipelines: Pipelines::Compute(pipelines), watched })
     }
 
     /// A render pipeline of two entry points of a composed pass. Triangles, both faces.
@@ -176,7 +179,19 @@ impl Pass {
             cache: None,
         });
         caught(scope)?;
-        Ok(Self { name: composed.pass.clone(), bindings, layout, pipelines: Pipelines::Render(pipeline) })
+        let shape = || Shape {
+            vertex: stages.vertex.to_owned(),
+            fragment: stages.fragment.map(str::to_owned),
+            vertices: stages
+                .vertices
+                .as_ref()
+                .map(|layout| (layout.array_stride, layout.attributes.to_vec())),
+            targets: targets.to_vec(),
+            depth: stages.depth,
+            samples: stages.samples,
+        };
+        let (name, watched) = (composed.pass.clone(), watched(gpu, composed, Some(&shape)));
+        Ok(Self { name, bindings, layout, pipelines: Pipelines::Render(pipeline), watched })
     }
 
     /// A pass that fills a picture of `format` by its entry points `vertex_picture` and `fragment`.
@@ -226,6 +241,12 @@ impl Pass {
             formats.iter().map(|format| Some(wgpu::ColorTargetState::from(*format))).collect();
         Self::render_to(gpu, &shaders.compose_with(pass, definitions)?, &stages, &targets)
     }
+}
+
+/// Shows the shader of a pass to the watcher of its device, if there is one.
+fn watched(gpu: &Gpu, composed: &Composed, shape: Option<&dyn Fn() -> Shape>) -> Option<Arc<Watched>> {
+    let watcher = gpu.watcher()?.clone();
+    Some(Arc::new(Watched { shader: watcher.built(composed), watcher, shape: shape.map(|shape| shape()) }))
 }
 
 fn shader_module(gpu: &Gpu, composed: &Composed) -> wgpu::ShaderModule {

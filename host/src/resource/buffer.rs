@@ -3,6 +3,7 @@
 
 use super::map;
 use crate::gpu::{Gpu, GpuError};
+use crate::pass::watch::Held;
 use encase::ShaderType;
 use encase::internal::WriteInto;
 
@@ -83,7 +84,11 @@ impl Buffer {
         let mut encoder = gpu.encoder();
         encoder.copy_buffer_to_buffer(&self.raw, 0, &copy, 0, self.raw.size());
         gpu.submit(encoder)?;
-        map(gpu, &copy)
+        let contents = map(gpu, &copy)?;
+        if let Some(watcher) = gpu.watcher() {
+            watcher.read(Held::Buffer(self.clone()), &contents);
+        }
+        Ok(contents)
     }
 
     /// The contents as little-endian 32-bit words.

@@ -4,11 +4,14 @@
 use crate::gpu::Gpu;
 
 /// A sampler.
+#[derive(Clone)]
 pub struct Sampler {
     /// The sampler itself.
     pub raw: wgpu::Sampler,
     /// True for a comparison sampler.
     pub comparison: bool,
+    /// How it was made.
+    pub descriptor: wgpu::SamplerDescriptor<'static>,
 }
 
 impl Sampler {
@@ -51,6 +54,19 @@ impl Sampler {
         )
     }
 
+    /// Linear within and between levels, clamped to the edge.
+    pub fn linear_levels(gpu: &Gpu) -> Self {
+        Self::create(
+            gpu,
+            &wgpu::SamplerDescriptor {
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            },
+        )
+    }
+
     /// A comparison sampler for shadow maps with forward depth.
     pub fn shadow(gpu: &Gpu) -> Self {
         Self::create(
@@ -64,7 +80,8 @@ impl Sampler {
         )
     }
 
-    fn create(gpu: &Gpu, descriptor: &wgpu::SamplerDescriptor<'_>) -> Self {
-        Self { raw: gpu.device.create_sampler(descriptor), comparison: descriptor.compare.is_some() }
+    fn create(gpu: &Gpu, descriptor: &wgpu::SamplerDescriptor<'static>) -> Self {
+        let raw = gpu.device.create_sampler(descriptor);
+        Self { raw, comparison: descriptor.compare.is_some(), descriptor: descriptor.clone() }
     }
 }

@@ -4,6 +4,16 @@
 use super::map;
 use super::texels::{decode, encode};
 use crate::gpu::{Gpu, GpuError};
+use crate::pass::watch::Held;
+
+/// The part of a texture that a view shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// First level and how many.
+    pub levels: [u32; 2],
+    /// First layer and how many.
+    pub layers: [u32; 2],
+}
 
 /// A 2D texture, an array of them or a 3D texture, with one view of the whole. Clones are the same texture.
 #[derive(Clone)]
@@ -14,6 +24,8 @@ pub struct Texture {
     pub view: wgpu::TextureView,
     /// How `view` presents it.
     pub dimension: wgpu::TextureViewDimension,
+    /// What `view` shows.
+    pub part: Part,
 }
 
 impl Texture {
@@ -83,18 +95,34 @@ impl Texture {
             usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
-        let view = raw.create_view(&wgpu::TextureViewDescriptor::default());
-        Self { raw, view, dimension: wgpu::TextureViewDimension::D2 }
+        Self::whole(raw, wgpu::TextureViewDimension::D2)
+    }
+
+    /// A texture of the caller's with a view of all of it.
+    pub fn whole(raw: wgpu::Texture, dimension: wgpu::TextureViewDimension) -> Self {
+        let layers = match dimension {
+            wgpu::TextureViewDimension::D3 => 1,
+            _ => raw.depth_or_array_layers(),
+        };
+        let part = Part { levels: [0, raw.mip_level_count()], layers: [0, layers] };
+        Self::of_part(raw, dimension, part)
+    }
+
+    fn of_part(raw: wgpu::Texture, dimension: wgpu::TextureViewDimension, part: Part) -> Self {
+        let view = raw.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(dimension),
+            base_mip_level: part.levels[0],
+            mip_level_count: Some(part.levels[1]),
+            base_array_layer: part.layers[0],
+            array_layer_count: Some(part.layers[1]),
+            ..Default::default()
+        });
+        Self { raw, view, dimension, part }
     }
 
     /// One level, to be bound where a pass takes a single one. Its size is still that of the whole.
     pub(crate) fn of_level(&self, level: u32) -> Self {
-        let view = self.raw.create_view(&wgpu::TextureViewDescriptor {
-            base_mip_level: level,
-            mip_level_count: Some(1),
-            ..Default::default()
-        });
-        Self { raw: self.raw.clone(), view, dimension: self.dimension }
+        Self::of_part(self.raw.clone(), self.dimension, Part { levels: [level, 1], ..self.part })
     }
 
     /// A 3D texture that passes read.
@@ -109,19 +137,10 @@ impl Texture {
         Self::create(gpu, size, format, usage, wgpu::TextureViewDimension::D3)
     }
 
-    /// One layer, to be bound where a pass takes a single texture. Read back it is still the whole array.
-    pub(crate) fn of_layer(&self, layer: u32) -> Self {
-        Self { raw: self.raw.clone(), view: self.layer(layer), dimension: wgpu::TextureViewDimension::D2 }
-    }
-
-    /// A view of one layer, to draw into.
-    pub fn layer(&self, layer: u32) -> wgpu::TextureView {
-        self.raw.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2),
-            base_array_layer: layer,
-            array_layer_count: Some(1),
-            ..Default::default()
-        })
+    /// One layer, to be drawn into or bound where a pass takes a single texture. Read back it is still the whole array.
+    pub fn of_layer(&self, layer: u32) -> Self {
+        let part = Part { layers: [layer, 1], ..self.part };
+        Self::of_part(self.raw.clone(), wgpu::TextureViewDimension::D2, part)
     }
 
     fn create(
@@ -161,9 +180,7 @@ impl Texture {
             usage: usage | copies,
             view_formats: &[],
         });
-        let view = raw
-            .create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
-        Self { raw, view, dimension }
+        Self::whole(raw, dimension)
     }
 
     /// Width, height, layers or depth.
@@ -261,6 +278,11 @@ impl Texture {
         );
         gpu.submit(encoder)?;
         let bytes = map(gpu, &copy)?;
-        Ok(bytes.chunks_exact(padded as usize).map(|row| row[..tight as usize].to_vec()).collect())
+        let rows: Vec<_> =
+            bytes.chunks_exact(padded as usize).map(|row| row[..tight as usize].to_vec()).collect();
+        if let Some(watcher) = gpu.watcher() {
+            watcher.read(Held::Texture(self.clone()), &rows.concat());
+        }
+        Ok(rows)
     }
 }

@@ -121,7 +121,7 @@ impl ProjectiveRaster {
         map: &Texture,
     ) {
         let [width, height, _] = map.size();
-        let mut render = crate::core::begin(encoder, None, &map.view, 1.0);
+        let mut render = crate::core::begin(encoder, None, map, 1.0);
         let share = width as f32 / bound.splits.len() as f32;
         for (k, split) in bound.splits.iter().enumerate() {
             let left = k as f32 * share;
@@ -130,9 +130,9 @@ impl ProjectiveRaster {
             if first >= end {
                 continue;
             }
-            render.set_viewport(left, 0.0, share.min(width as f32 - left), height as f32, 0.0, 1.0);
-            render.set_scissor_rect(first, 0, end - first, height);
-            self.pass.set(&mut render, split);
+            render.set_viewport([left, 0.0, share.min(width as f32 - left), height as f32]);
+            render.set_scissor([first, 0, end - first, height]);
+            render.set(&self.pass, split);
             meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
         }
     }

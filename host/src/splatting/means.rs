@@ -4,7 +4,7 @@
 use super::SplattingError;
 use super::order::Order;
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, Resource, begin_target};
+use crate::pass::{Bound, Pass, Render, Resource};
 use crate::resource::{Buffer, Texture};
 
 /// Draws the splats of one sheet at a time as seen by one camera.
@@ -53,11 +53,11 @@ impl Means {
         sheet: u32,
         target: &Texture,
     ) {
-        let mut render = begin_target(encoder, target, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
+        let mut render = Render::onto(encoder, target, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
         let bound = self.sheets.get(sheet as usize).into_iter().flatten();
         for (bound, sorted) in bound.zip(&order.batches) {
-            pass.set(&mut render, bound);
-            render.draw_indirect(&sorted.draws.raw, 16 * u64::from(sheet));
+            render.set(pass, bound);
+            render.draw_indirect(&sorted.draws, 16 * u64::from(sheet));
         }
     }
 }

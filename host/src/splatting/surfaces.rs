@@ -61,9 +61,9 @@ impl Drawn {
     ) {
         let clear = wgpu::Color { r: self.clear, ..wgpu::Color::TRANSPARENT };
         let far = if reversed { 0.0 } else { 1.0 };
-        let color = (&self.target.view, None, clear);
-        let mut render = begin(encoder, Some(color), &depth.view, far);
-        self.passes[usize::from(reversed)].set(&mut render, &self.bound);
+        let color = (&self.target, None, clear);
+        let mut render = begin(encoder, Some(color), depth, far);
+        render.set(&self.passes[usize::from(reversed)], &self.bound);
         meshes.iter().for_each(|mesh| mesh.draw(&mut render, 0));
     }
 }

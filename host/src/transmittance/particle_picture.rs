@@ -5,7 +5,7 @@ use super::particles::groups;
 use super::{MapSettings, MediumView, ParticleBuffer, TransmittanceError, TransmittanceMap};
 use crate::core::Sort;
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, RenderStages, Resource};
+use crate::pass::{Bound, Pass, Render, RenderStages, Resource};
 use crate::resource::{Buffer, Texture};
 use crate::shaders::Shaders;
 use airlight_validate::Definitions;
@@ -180,18 +180,8 @@ impl ParticlePicture {
         }
         self.sort.record(gpu, encoder, [&bound.keys, &bound.order], bound.count, 32)?;
         let clear = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
-        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };
-        let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("transmittance/render_particles"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &bound.picture.view,
-                depth_slice: None,
-                resolve_target: None,
-                ops,
-            })],
-            ..Default::default()
-        });
-        self.render.set(&mut render, &bound.render);
+        let mut render = Render::onto(encoder, &bound.picture, wgpu::LoadOp::Clear(clear));
+        render.set(&self.render, &bound.render);
         render.draw(0..6, 0..bound.count);
         Ok(())
     }

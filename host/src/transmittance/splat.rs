@@ -3,7 +3,7 @@
 
 use super::{Form, MapSettings, ParticleBuffer, Precision, TransmittanceError, TransmittanceMap};
 use crate::gpu::Gpu;
-use crate::pass::{Bound, Pass, RenderStages};
+use crate::pass::{Bound, ColorTarget, Pass, Render, RenderStages};
 use crate::shaders::Shaders;
 
 /// Splats particles by additive blending, in any order: [`Form::Extinction`] and [`Form::Opacity`] in half floats.
@@ -73,23 +73,9 @@ impl Splat {
         map: &TransmittanceMap,
         particles: &ParticleBuffer,
     ) {
-        let views: Vec<_> = (0..self.settings.layers()).map(|layer| map.coefficients.layer(layer)).collect();
-        let ops = wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-            store: wgpu::StoreOp::Store,
-        };
-        let attachments: Vec<_> = views
-            .iter()
-            .map(|view| {
-                Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
-            })
-            .collect();
-        let mut render = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("transmittance/splat"),
-            color_attachments: &attachments,
-            ..Default::default()
-        });
-        self.pass.set(&mut render, bound);
+        let color = |layer| ColorTarget::cleared(&map.coefficients.of_layer(layer), wgpu::Color::TRANSPARENT);
+        let mut render = Render::new(encoder, (0..self.settings.layers()).map(color).collect(), None);
+        render.set(&self.pass, bound);
         render.draw(0..6, 0..particles.count);
     }
 }

@@ -96,7 +96,7 @@ fn multisampled([width, height]: [u32; 2], depths: &[f32]) -> Texture {
         render.set_bind_group(0, &group, &[]);
         render.draw(0..3, 0..4);
     });
-    Texture { raw, view, dimension: wgpu::TextureViewDimension::D2 }
+    Texture::whole(raw, wgpu::TextureViewDimension::D2)
 }
 
 #[test]

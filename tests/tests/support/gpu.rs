@@ -4,6 +4,8 @@
 //!
 //! `AIRLIGHT_MUTATE='FILE|OLD|NEW'` replaces text in a copy of the shaders before they are composed:
 //! a test that still passes with a broken shader proves nothing.
+//!
+//! `AIRLIGHT_CAPTURE=FOLDER` records every pass with its inputs and results, see `airlight::capture`.
 #![allow(dead_code, clippy::unwrap_used)]
 
 #[path = "gpu/random.rs"]
@@ -15,6 +17,7 @@ mod scenes;
 #[allow(unused_imports)]
 pub use {random::Random, scenes::*};
 
+use airlight::capture::Recorder;
 use airlight::core::{Camera, DepthRange, Light, PerspectiveView};
 use airlight::scattering::{Medium, Rectification, Weighting};
 use airlight::validate::{Definitions, Library};
@@ -24,18 +27,32 @@ use airlight_tests::reference::camera::{self, Camera as ReferenceCamera};
 use airlight_tests::reference::scattering as reference;
 use glam::{Mat4, Vec2, Vec3};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 static GPU: OnceLock<Gpu> = OnceLock::new();
+static RECORDER: OnceLock<Arc<Recorder>> = OnceLock::new();
 
 /// The device of this test binary.
 pub fn gpu() -> &'static Gpu {
     thread_local!(static SETTLED: Settled = const { Settled });
     SETTLED.with(|_| ());
     GPU.get_or_init(|| match pollster::block_on(Gpu::new()) {
-        Ok(gpu) => gpu,
+        Ok(gpu) => match std::env::var_os("AIRLIGHT_CAPTURE") {
+            None => gpu,
+            Some(folder) => {
+                let recorder = Arc::new(Recorder::new(&gpu, Path::new(&folder)).unwrap());
+                gpu.watched_by(RECORDER.get_or_init(|| recorder).clone())
+            }
+        },
         Err(error) => panic!("{error}"),
     })
+}
+
+/// Notes where passes are recorded that the snapshot `name` holds what was read last.
+pub fn note_snapshot(name: &str) {
+    if let Some(recorder) = RECORDER.get() {
+        recorder.snapshot(name).unwrap();
+    }
 }
 
 /// Waits at the end of a test's thread until the driver's own thread has nothing left to do.

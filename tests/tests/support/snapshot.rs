@@ -11,7 +11,7 @@
 //! snapshot was blessed on another adapter or driver: delete the snapshots to move them.
 #![allow(dead_code, clippy::unwrap_used)]
 
-use crate::gpu::gpu;
+use crate::gpu::{gpu, note_snapshot};
 use airlight::Texture;
 use airlight_tests::error;
 use insta::{Comparator, Settings, Snapshot, internals::SnapshotContents};
@@ -320,6 +320,7 @@ pub fn buffer(texture: &Texture, layer: usize, keep: usize, tolerance: Tolerance
 /// Compares a buffer with its snapshot.
 pub fn assert_buffer(name: &str, buffer: &Buffer) {
     let text = buffer.to_text();
+    note_snapshot(name);
     bound(name, &buffer.adapter, 1.0, || insta::assert_snapshot!(name, text));
 }
 
@@ -327,5 +328,6 @@ pub fn assert_buffer(name: &str, buffer: &Buffer) {
 pub fn assert_picture(name: &str, adapter: &str, picture: &Picture, similarity: f64) {
     let file = format!("{name}.png");
     let bytes = picture.to_png();
+    note_snapshot(name);
     bound(name, adapter, similarity, || insta::assert_binary_snapshot!(&file, bytes));
 }

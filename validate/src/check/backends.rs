@@ -44,6 +44,13 @@ pub enum Written {
     Words(Vec<u32>),
     /// Source text.
     Text(String),
+    /// Source text whose entry point may have had to take another name.
+    Named {
+        /// The text.
+        text: String,
+        /// The name of the entry point in it.
+        entry_point: String,
+    },
 }
 
 /// Writes one entry point.
@@ -109,10 +116,9 @@ fn write_unguarded(
                 .write(module, info, None)
                 .map_err(|error| error.to_string())?
                 .entry_point_names;
-            for name in names {
-                name.map_err(|error| error.to_string())?;
-            }
-            Ok(Written::Text(text))
+            let names: Result<Vec<String>, _> = names.into_iter().collect();
+            let entry_point = names.map_err(|error| error.to_string())?.pop().unwrap_or_default();
+            Ok(Written::Named { text, entry_point })
         }
         Backend::Glsl => {
             let pipeline = glsl::PipelineOptions { shader_stage: stage, entry_point: name, multiview: None };

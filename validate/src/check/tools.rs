@@ -21,11 +21,14 @@ pub enum Tool {
     /// The reference compiler of GLSL.
     #[value(name = "glslangValidator")]
     Glslang,
+    /// The DirectX Shader Compiler.
+    #[value(name = "dxc")]
+    Dxc,
 }
 
 impl Tool {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Tint, Self::SpirvVal, Self::Glslang];
+    pub const ALL: [Self; 4] = [Self::Tint, Self::SpirvVal, Self::Glslang, Self::Dxc];
 
     /// The program's name.
     pub fn name(self) -> &'static str {
@@ -33,6 +36,7 @@ impl Tool {
             Self::Tint => "tint",
             Self::SpirvVal => "spirv-val",
             Self::Glslang => "glslangValidator",
+            Self::Dxc => "dxc",
         }
     }
 
@@ -42,6 +46,7 @@ impl Tool {
             Self::Tint => "build `tint_cmd_tint_cmd` of https://dawn.googlesource.com/dawn",
             Self::SpirvVal => "install Debian's `spirv-tools` or the Vulkan SDK",
             Self::Glslang => "install Debian's `glslang-tools` or the Vulkan SDK",
+            Self::Dxc => "run `scripts/dxc.sh`, or install the Vulkan SDK",
         }
     }
 }
@@ -127,6 +132,18 @@ pub(crate) fn spirv_val(program: &Path, words: &[u32], file: &Path) -> Result<()
 /// Compiles GLSL; the stage is the file's extension.
 pub(crate) fn glslang(program: &Path, text: &str, file: &Path) -> Result<(), String> {
     judged(program, run(program, &[], text.as_bytes(), file)?, file)
+}
+
+/// Compiles HLSL for shader model 6.0; `stage` is `vs`, `ps` or `cs`.
+pub(crate) fn dxc(
+    program: &Path,
+    (text, entry_point): (&str, &str),
+    stage: &str,
+    file: &Path,
+) -> Result<(), String> {
+    let profile = format!("{stage}_6_0");
+    let arguments = ["-T", &profile, "-E", entry_point, "-HV", "2018"];
+    judged(program, run(program, &arguments, text.as_bytes(), file)?, file)
 }
 
 fn judged(program: &Path, output: Output, file: &Path) -> Result<(), String> {

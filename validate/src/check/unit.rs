@@ -176,6 +176,18 @@ fn compile(
             }
             None => Ok(()),
         },
+        (Backend::Hlsl, Written::Named { text, entry_point }) => match context.tool(Tool::Dxc) {
+            Some(program) => {
+                let stage = match suffix {
+                    "vert" => "vs",
+                    "frag" => "ps",
+                    _ => "cs",
+                };
+                let file = context.folder.join(format!("{number}.hlsl"));
+                tools::dxc(program, (text, entry_point), stage, &file)
+            }
+            None => Ok(()),
+        },
         _ => Ok(()),
     }
 }

@@ -9,7 +9,7 @@ use crate::command::CommandError;
 use crate::painterly::{
     Brushes, IsoBound, PainterlyStyle, Stroke, StrokeSettings, StrokeStep, StrokeTargets, Strokes,
 };
-use crate::pass::{Bound, Pass, RenderStages, begin_target};
+use crate::pass::{Bound, Pass, Render, RenderStages};
 use crate::{Buffer, Gpu, Shaders, Texture};
 use airlight_tests::error::mean_absolute;
 use glam::Vec2;
@@ -163,11 +163,10 @@ impl Quads {
 
     fn draw(&self, encoder: &mut wgpu::CommandEncoder, target: &Texture) {
         clear(encoder, target);
-        let mut render = begin_target(encoder, target, wgpu::LoadOp::Load);
-        self.pass.set(&mut render, &self.bound);
-        render.set_vertex_buffer(0, self.vertices.raw.slice(..));
-        render.set_index_buffer(self.indices.raw.slice(..), wgpu::IndexFormat::Uint32);
-        render.draw_indexed(0..self.count, 0, 0..1);
+        let mut render = Render::onto(encoder, target, wgpu::LoadOp::Load);
+        render.set(&self.pass, &self.bound);
+        render.set_mesh(&self.vertices, &self.indices);
+        render.draw_indexed(0..self.count, 0..1);
     }
 }
 
@@ -204,5 +203,5 @@ fn own_variation(hash: u32) -> f32 {
 }
 
 fn clear(encoder: &mut wgpu::CommandEncoder, target: &Texture) {
-    drop(begin_target(encoder, target, wgpu::LoadOp::Clear(wgpu::Color::WHITE)));
+    drop(Render::onto(encoder, target, wgpu::LoadOp::Clear(wgpu::Color::WHITE)));
 }

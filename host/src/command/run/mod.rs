@@ -210,10 +210,7 @@ fn make_texture(gpu: &Gpu, recipe: &TextureRecipe) -> Texture {
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(height) };
         gpu.queue.write_texture(raw.as_image_copy(), bytes, layout, raw.size());
     }
-    let dimension = recipe.dimension;
-    let view =
-        raw.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
-    Texture { raw, view, dimension }
+    Texture::whole(raw, recipe.dimension)
 }
 
 fn draw(gpu: &Gpu, pass: &Pass, bound: &Bound, target: &Texture) -> Result<(), crate::GpuError> {
