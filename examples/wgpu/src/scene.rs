@@ -101,9 +101,16 @@ pub struct Scene {
     pub exposure: f32,
 }
 
-const EYE: Vec3 = Vec3::new(3.2, 1.5, 5.2);
-const TARGET: Vec3 = Vec3::new(-1.0, 1.7, -0.8);
-const FAR: f32 = 60.0;
+/// Where the camera stands, metres.
+pub const EYE: Vec3 = Vec3::new(3.2, 1.5, 5.2);
+/// Where it looks.
+pub const TARGET: Vec3 = Vec3::new(-1.0, 1.7, -0.8);
+/// From the lower to the upper edge of the picture, degrees.
+pub const FIELD_OF_VIEW: f32 = 50.0;
+/// Distance of the near plane, metres.
+pub const NEAR: f32 = 0.1;
+/// Distance of the far plane, metres.
+pub const FAR: f32 = 60.0;
 /// Ball that holds everything that casts a shadow.
 const CASTERS: (Vec3, f32) = (Vec3::new(0.0, 2.6, 1.0), 9.6);
 
@@ -114,8 +121,9 @@ pub fn scene(file: &Path, [width, height]: [u32; 2]) -> Result<Scene, tobj::Load
     let turned = Mat4::from_translation(Vec3::new(-0.6, 0.69, -0.8)) * Mat4::from_rotation_y(-0.35);
     mesh.add_file(file, turned, 1.7, Vec3::new(0.80, 0.70, 0.60))?;
 
-    let clip_from_world = directx::perspective(50f32.to_radians(), width as f32 / height as f32, 0.1, FAR)
-        * look_at_mat4(EYE, TARGET, Vec3::Y);
+    let clip_from_world =
+        directx::perspective(FIELD_OF_VIEW.to_radians(), width as f32 / height as f32, NEAR, FAR)
+            * look_at_mat4(EYE, TARGET, Vec3::Y);
     let camera = Camera {
         clip_from_world,
         world_from_clip: clip_from_world.inverse(),
