@@ -19,8 +19,8 @@ const STEPS: u32 = 96u;
 fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
     // The view ray, up to the surface that the depth prepass saw; the sky has depth 0.
     let depth = prepass_depth(in.position, 0u);
-    let ndc = frag_coord_to_ndc(in.position, view.viewport).xy;
-    let surface = position_ndc_to_world(vec3<f32>(ndc, max(depth, 1e-6)), view.world_from_clip);
+    let ndc = frag_coord_to_ndc(in.position).xy;
+    let surface = position_ndc_to_world(vec3<f32>(ndc, max(depth, 1e-6)));
     let eye = view.world_position;
     let direction = normalize(surface - eye);
     let distance = min(length(surface - eye), medium.distance_limit);
@@ -32,7 +32,7 @@ fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
     for (var step = 0u; step < STEPS; step++) {
         let along = distance * (f32(step) + offset) / f32(STEPS);
         let point = vec4<f32>(eye + along * direction, 1.0);
-        let view_z = position_world_to_view(point.xyz, view.view_from_world).z;
+        let view_z = position_world_to_view(point.xyz).z;
         let weight = transmittance(medium.extinction * along);
         seen += weight * fetch_directional_shadow(0u, point, vec3<f32>(0.0), view_z);
         weights += weight;

@@ -5,28 +5,41 @@
 
 use bevy::app::ScheduleRunnerPlugin;
 use bevy::asset::{RenderAssetUsages, embedded_asset};
-use bevy::camera::{Hdr, RenderTarget};
+use bevy::camera::RenderTarget;
 use bevy::core_pipeline::{prepass::DepthPrepass, tonemapping::Tonemapping};
-use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap, NotShadowCaster, NotShadowReceiver};
+use bevy::light::{
+    CascadeShadowConfigBuilder, DirectionalLightShadowMap, NotShadowCaster, NotShadowReceiver,
+};
 use bevy::mesh::{Indices, MeshVertexBufferLayoutRef, PrimitiveTopology};
 use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
 use bevy::render::render_resource::{
-    AsBindGroup, CompareFunction, Face, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError, TextureFormat,
+    AsBindGroup, CompareFunction, Face, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
+    TextureFormat,
 };
+use bevy::render::view::Hdr;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured, save_to_disk};
 use bevy::shader::ShaderRef;
+use bevy::window::ExitCondition;
 use std::time::Duration;
 
 fn main() {
     let mut app = App::new();
     app.add_plugins((
-        DefaultPlugins.set(WindowPlugin { primary_window: None, ..default() }),
+        DefaultPlugins.set(WindowPlugin {
+            primary_window: None,
+            exit_condition: ExitCondition::DontExit,
+            ..default()
+        }),
         ScheduleRunnerPlugin::run_loop(Duration::ZERO),
         AirPlugin,
     ));
     app.insert_resource(ClearColor(Color::linear_rgb(0.10, 0.12, 0.16)));
-    app.insert_resource(GlobalAmbientLight { color: Color::srgb(0.55, 0.65, 0.9), brightness: 60.0, ..default() });
+    app.insert_resource(GlobalAmbientLight {
+        color: Color::srgb(0.55, 0.65, 0.9),
+        brightness: 60.0,
+        ..default()
+    });
     app.insert_resource(DirectionalLightShadowMap { size: 4096 });
     app.add_systems(Startup, scene);
     app.add_systems(Update, photograph);
@@ -116,13 +129,22 @@ fn scene(
 ) -> Result {
     let mut matte = |r, g, b| {
         let base_color = Color::linear_rgb(r, g, b);
-        materials.add(StandardMaterial { base_color, perceptual_roughness: 1.0, reflectance: 0.1, ..default() })
+        materials.add(StandardMaterial {
+            base_color,
+            perceptual_roughness: 1.0,
+            reflectance: 0.1,
+            ..default()
+        })
     };
     let (stone, ground, skin) = (matte(0.42, 0.38, 0.34), matte(0.30, 0.26, 0.22), matte(0.70, 0.32, 0.16));
 
     let mut block = |low: Vec3, high: Vec3, material: &Handle<StandardMaterial>| {
         let cuboid = meshes.add(Cuboid::from_size(high - low));
-        commands.spawn((Mesh3d(cuboid), MeshMaterial3d(material.clone()), Transform::from_translation(0.5 * (low + high))));
+        commands.spawn((
+            Mesh3d(cuboid),
+            MeshMaterial3d(material.clone()),
+            Transform::from_translation(0.5 * (low + high)),
+        ));
     };
     block(vec3(-5.4, -0.3, -9.0), vec3(5.0, 0.0, 9.0), &ground);
     block(vec3(-5.4, 5.2, -9.0), vec3(5.0, 5.5, 9.0), &stone); // ceiling
@@ -138,7 +160,9 @@ fn scene(
         commands.spawn((Mesh3d(column.clone()), MeshMaterial3d(stone.clone()), place));
     }
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../host/assets/suzanne.obj");
-    let place = Transform::from_xyz(-0.3, 1.55, -0.6).with_rotation(Quat::from_rotation_y(-0.2)).with_scale(Vec3::splat(0.9));
+    let place = Transform::from_xyz(-0.3, 1.55, -0.6)
+        .with_rotation(Quat::from_rotation_y(-0.2))
+        .with_scale(Vec3::splat(0.9));
     commands.spawn((Mesh3d(meshes.add(mesh(file)?)), MeshMaterial3d(skin), place));
 
     let medium = Medium {
@@ -197,11 +221,10 @@ fn photograph(mut commands: Commands, picture: Res<Picture>, mut frame: Local<u3
     *frame += 1;
     if *frame == 20 {
         let file = std::env::args().nth(1).unwrap_or_else(|| "shafts.png".into());
-        commands
-            .spawn(Screenshot::image(picture.0.clone()))
-            .observe(save_to_disk(file))
-            .observe(|_: On<ScreenshotCaptured>, mut exit: MessageWriter<AppExit>| {
+        commands.spawn(Screenshot::image(picture.0.clone())).observe(save_to_disk(file)).observe(
+            |_: On<ScreenshotCaptured>, mut exit: MessageWriter<AppExit>| {
                 exit.write(AppExit::Success);
-            });
+            },
+        );
     }
 }
