@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The examples that are programs: `examples/wgpu` from nothing but the files that its README lists, against its blessed
-//! picture and against the same scene through the host.
+//! The examples: `examples/wgpu` from nothing but the files that its README lists, against its blessed picture and against
+//! the same scene through the host; the shader of `examples/bevy` against Bevy's declarations.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/gpu.rs"]
@@ -16,6 +16,7 @@ use airlight::stage::{Lighting, Setting};
 use airlight_example_wgpu as example;
 use glam::Vec3;
 use gpu::{gpu, shaders};
+use naga_oil::compose::{ComposableModuleDescriptor, Composer, NagaModuleDescriptor, ShaderDefValue};
 use snapshot::{Picture, assert_picture};
 use std::path::{Path, PathBuf};
 
@@ -97,4 +98,51 @@ fn plain_wgpu_draws_what_the_host_draws() {
         "structural similarity {structure:.4}, mean difference {mean:.2}"
     );
     assert_picture("example_wgpu", &gpu().description(), &picture, 0.995);
+}
+
+/// What the shader of `examples/bevy` imports of Bevy 0.18, declared as there.
+const BEVY: [&str; 5] = [
+    "#define_import_path bevy_pbr::forward_io
+    struct VertexOutput {
+        @builtin(position) position: vec4<f32>,
+        @location(0) world_position: vec4<f32>,
+        @location(1) world_normal: vec3<f32>,
+    }",
+    "#define_import_path bevy_pbr::mesh_view_bindings
+    struct View { world_position: vec3<f32>, exposure: f32 }
+    struct DirectionalLight { color: vec4<f32>, direction_to_light: vec3<f32> }
+    struct Lights { directional_lights: array<DirectionalLight, 1u> }
+    @group(0) @binding(0) var<uniform> view: View;
+    @group(0) @binding(1) var<uniform> lights: Lights;",
+    "#define_import_path bevy_pbr::prepass_utils
+    fn prepass_depth(frag_coord: vec4<f32>, sample_index: u32) -> f32 { return frag_coord.z; }",
+    "#define_import_path bevy_pbr::shadows
+    fn fetch_directional_shadow(
+        light_id: u32, frag_position: vec4<f32>, surface_normal: vec3<f32>, view_z: f32
+    ) -> f32 { return view_z; }",
+    "#define_import_path bevy_pbr::view_transformations
+    fn frag_coord_to_ndc(frag_coord: vec4<f32>) -> vec3<f32> { return frag_coord.xyz; }
+    fn position_ndc_to_world(ndc_pos: vec3<f32>) -> vec3<f32> { return ndc_pos; }
+    fn position_world_to_view(world_pos: vec3<f32>) -> vec3<f32> { return world_pos; }",
+];
+
+#[test]
+fn the_shader_for_bevy_composes_from_the_modules() {
+    let mut composer = Composer::default();
+    let modules = airlight_wgsl::MODULES.iter().map(|module| (module.source, module.file));
+    for (source, file_path) in modules.chain(BEVY.map(|source| (source, "bevy"))) {
+        let descriptor = ComposableModuleDescriptor { source, file_path, ..Default::default() };
+        composer.add_composable_module(descriptor).unwrap();
+    }
+    let source = std::fs::read_to_string(repository().join("examples/bevy/src/air.wgsl")).unwrap();
+    let shader_defs = [("MATERIAL_BIND_GROUP".to_owned(), ShaderDefValue::UInt(3))].into();
+    let descriptor =
+        NagaModuleDescriptor { source: &source, file_path: "air.wgsl", shader_defs, ..Default::default() };
+    let module = composer.make_naga_module(descriptor).unwrap_or_else(|error| panic!("{}", error.inner));
+    let medium = module
+        .global_variables
+        .iter()
+        .find(|(_, global)| global.binding.is_some_and(|binding| (binding.group, binding.binding) == (3, 0)));
+    let (_, medium) = medium.expect("the uniform of the material");
+    assert_eq!(module.types[medium.ty].inner.size(module.to_ctx()), 32, "the struct of src/main.rs");
 }
