@@ -86,6 +86,12 @@ docs: rust ## The book, in docs/book, and the API documentation, in target/doc
 	else echo "docs: mdbook is not on the PATH, so the book is left out; install it with 'cargo install mdbook --locked'"; fi
 	cargo doc --workspace --locked --no-deps $(FEATURES)
 
+.PHONY: page-test
+page-test: ## The page of examples/page in headless Chromium (needs npm and Chromium)
+	@command -v npm >/dev/null || { echo "npm is missing; install Node.js 20 or later" >&2; exit 1; }
+	npm ci --prefix tests/browser
+	node --test tests/browser/page/
+
 .PHONY: clean
 clean: rust ## Remove what was built
 	cargo clean
