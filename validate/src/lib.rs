@@ -32,7 +32,11 @@ mod scan;
 #[cfg(feature = "command")]
 pub mod check;
 #[cfg(feature = "command")]
+pub mod docs;
+#[cfg(feature = "command")]
 pub mod flat;
+#[cfg(feature = "command")]
+pub mod list;
 #[cfg(feature = "command")]
 pub mod manifest;
 

@@ -50,6 +50,27 @@ enum Job {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Write the book's pages that follow from the shaders.
+    Docs {
+        /// Folder with `<system>/<module>.wgsl`.
+        #[arg(default_value = "wgsl")]
+        dir: PathBuf,
+        /// Folder of the book's chapters.
+        #[arg(long, value_name = "DIR", default_value = "docs/src")]
+        out: PathBuf,
+        /// Write nothing; fail if a page is not what would be written.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Write the lists of the crate, every module, pass and system of `DIR`, to `DIR/src/list.rs`.
+    List {
+        /// Folder with `<system>/<module>.wgsl`.
+        #[arg(default_value = "wgsl")]
+        dir: PathBuf,
+        /// Write nothing; fail if the file is not what would be written.
+        #[arg(long)]
+        check: bool,
+    },
     /// Print a pass as stand-alone WGSL.
     Flat {
         /// `<system>/<pass>` or `<system>/<pass>:<permutation>`.
@@ -67,6 +88,8 @@ fn main() -> ExitCode {
     let done = std::panic::catch_unwind(|| match arguments.command {
         Job::Check { dir, format, require, quiet } => command::check::run(dir, format, require, quiet),
         Job::Manifest { dir, check, out } => command::manifest::run(&dir, check, out),
+        Job::Docs { dir, out, check } => command::docs::run(&dir, &out, check),
+        Job::List { dir, check } => command::list::run(&dir, check),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
     });
     let (message, code) = match done {

@@ -2,7 +2,9 @@
 //! The subcommands, and what they share: the library that is read, files that are written, errors.
 
 pub(crate) mod check;
+pub(crate) mod docs;
 pub(crate) mod flat;
+pub(crate) mod list;
 pub(crate) mod manifest;
 
 use airlight_validate::{Error, Library};
