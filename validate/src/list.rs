@@ -11,7 +11,7 @@ const WIDTH: usize = 110;
 pub fn render(library: &Library) -> String {
     let mut text = String::from(
         "// SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense\n\
-         // Written by `airlight-validate list`: every module after those that it imports, passes by name.\n\nmodules! {\n",
+         // Written by `airlight-validate list`: every module after those that it imports, passes by name.\n\nuse super::{Module, Pass, System};\n\nmodules! {\n",
     );
     for module in library.modules() {
         let imports: Vec<String> = module.imports.iter().map(|path| format!("\"{}\"", bare(path))).collect();
