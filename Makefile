@@ -50,8 +50,10 @@ bench: driver build ## Ratios against baselines, interleaved in one run
 	$(AIRLIGHT) bench
 
 .PHONY: bless
-bless: driver build ## Accept changed snapshots and write the manifest; then look at the diff
+bless: driver build ## Accept changed snapshots and write manifest, lists and pages; then look at the diff
+	$(VALIDATE) list wgsl
 	$(VALIDATE) manifest wgsl
+	$(VALIDATE) docs wgsl --out docs/src
 	INSTA_UPDATE=always AIRLIGHT_BLESS=1 cargo test $(CARGO_FLAGS)
 	# insta notes the path of the source as this machine has it.
 	sed -i.bak "1,6{/^source: /d;}" tests/tests/snapshots/*.snap && rm -f tests/tests/snapshots/*.bak

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The command `airlight-validate`.
 
+#[cfg(test)]
+mod book;
 mod command;
 
 use airlight_validate::check::{Format, Tool};

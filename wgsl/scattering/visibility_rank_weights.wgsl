@@ -15,7 +15,7 @@
 // error: equal weights within 1e-6; test rank_weights::equal_weights_are_counted_exactly.
 // parameter colors: 0, 1 or 3.
 // parameter channel: 0 .. colors.
-// parameter weight_bits: of a weight, 4 or 8.
+// parameter weight_bits: of a weight, 8 or 16.
 // parameter weight, greatest: from 0 up, of one unit.
 // parameter weights: heads and bit planes of weights.
 // parameter depth: of the ray, 0..1.
