@@ -8,7 +8,7 @@
 // note: A voxel has three sides and may be skewed: with B, which takes metres to voxels, gradients become B^T g and second
 // note: derivatives B^T H B. Both are scaled by the greatest entry of B, so that voxels of any size neither overflow nor vanish.
 // note: Where both curvatures are alike there is no direction, and where the value hardly changes there is no curvature.
-// equation: S = −side · (Pᵀ H P) / |g| in a basis of the tangent plane, (a b; b c) = −S;  κ = ½ (a + c) ± √(¼ (a − c)² + b²)
+// equation: (a b; b c) = side Pᵀ H P / |g| in a basis P of the tangent plane;  κ = ½ (a + c) ± √(¼ (a − c)² + b²)
 // equation: direction of κ₁: half the angle of (½ (a − c), b);  in metres: gradient Bᵀ g, second derivatives Bᵀ H B
 // error: eigenvalues within 1e-4, directions 0.05 degrees; test painterly_curvature_functions::curvatures_are_eigenvalues_in_any_space.
 // error: spheres in any box within 2 % of their radius; test painterly_curvature::spheres_bend_by_their_radius_in_any_box.

@@ -34,6 +34,21 @@ struct Book<'a> {
     passes: BTreeMap<String, Vec<(String, Composed)>>,
 }
 
+impl Book<'_> {
+    /// The struct of a name in one of some modules, or in what they import: the path of its module, and the struct.
+    fn struct_of(&self, paths: &[String], name: &str) -> Option<(String, Item)> {
+        let closure = self.library.closure(paths);
+        // Those that were asked for first.
+        let (own, others): (Vec<_>, Vec<_>) =
+            closure.into_iter().partition(|module| paths.contains(&module.path));
+        own.into_iter().chain(others).find_map(|module| {
+            let mut items = items(&module.source).into_iter();
+            let found = items.find(|item| item.kind == Kind::Struct && item.name == name)?;
+            Some((module.path.clone(), found))
+        })
+    }
+}
+
 /// Every generated page by its path in the book's folder, `modules/core/phase.md`.
 ///
 /// # Errors

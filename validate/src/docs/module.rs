@@ -5,7 +5,7 @@ use super::{
     Book, Cost, Header, Item, Kind, costs, described, header, items,
     text::{GENERATED, names, prose, section, short, table},
 };
-use crate::{Composed, ModuleSource, reflect};
+use crate::{Composed, Member, ModuleSource, reflect};
 
 pub(super) fn page(book: &Book, module: &ModuleSource) -> String {
     let header = header(&module.source);
@@ -23,7 +23,7 @@ pub(super) fn page(book: &Book, module: &ModuleSource) -> String {
     let composed = book.modules.get(&module.path);
     page += &section("Structs", &structs(&items, composed));
     page += &section("Constants", &constants(&items));
-    page += &section("Functions", &functions(&items, &header));
+    page += &section("Functions", &functions(book, module, &items, &header));
     page += &section("Cost", &composed.map(|composed| cost(&items, composed)).unwrap_or_default());
     page += &section("Imports", &links(book, &module.imports, 2));
     page += &section("Used by", &users(book, &module.path));
@@ -66,8 +66,10 @@ fn structs(items: &[Item], composed: Option<&Composed>) -> String {
     for item in items.iter().filter(|item| item.kind == Kind::Struct) {
         let layout = composed.and_then(|composed| reflect::layout_of(&composed.module, &item.name));
         let rows = item.parts.iter().map(|part| {
-            let member =
-                layout.iter().flat_map(|layout| &layout.members).find(|member| member.name == part.name);
+            // Of members that directives choose between, the one that is there.
+            let alone = item.parts.iter().filter(|other| other.name == part.name).count() == 1;
+            let same = |member: &&Member| member.name == part.name && (alone || member.ty == part.ty);
+            let member = layout.iter().flat_map(|layout| &layout.members).find(same);
             let offset = member.map_or_else(|| "-".to_owned(), |member| member.offset.to_string());
             vec![format!("`{}`", part.name), format!("`{}`", part.ty), offset, prose(&part.docs)]
         });
@@ -98,7 +100,7 @@ fn constants(items: &[Item]) -> String {
 }
 
 /// Functions with their parameters.
-fn functions(items: &[Item], header: &Header) -> String {
+fn functions(book: &Book, module: &ModuleSource, items: &[Item], header: &Header) -> String {
     let mut text = String::new();
     for item in items.iter().filter(|item| item.kind == Kind::Function) {
         text += &format!("### {}\n\n{}", item.name, condition(item));
@@ -106,12 +108,23 @@ fn functions(items: &[Item], header: &Header) -> String {
         let rows = item.parts.iter().map(|part| {
             let said = described(&item.docs, &part.name).filter(|text| !text.is_empty());
             let shared = header.parameters.iter().find(|(name, _)| *name == part.name);
-            let text = said.or_else(|| shared.map(|(_, text)| text.clone())).unwrap_or_default();
-            vec![format!("`{}`", part.name), format!("`{}`", part.ty), prose(&text)]
+            let shared = shared.map(|(_, text)| text.trim_end_matches('.').to_owned());
+            let text = said.or(shared).map(|text| prose(&text));
+            let text = text.or_else(|| members(book, module, &part.ty)).unwrap_or_default();
+            vec![format!("`{}`", part.name), format!("`{}`", part.ty), text]
         });
         text += &table(&["parameter", "type", "unit and range"], &rows.collect::<Vec<_>>());
     }
     text
+}
+
+/// Where the members of a struct are told of.
+fn members(book: &Book, module: &ModuleSource, ty: &str) -> Option<String> {
+    let name = ty.trim_start_matches("ptr<function, ").trim_end_matches('>');
+    let own = std::slice::from_ref(&module.path);
+    let (path, _) = book.struct_of(own, name)?;
+    let page = if path == module.path { String::new() } else { format!("../../modules/{}.md", short(&path)) };
+    Some(format!("see [{name}]({page}#{})", name.to_lowercase()))
 }
 
 /// What stands above every table of counts.

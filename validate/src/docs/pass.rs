@@ -2,7 +2,7 @@
 //! The page of a pass.
 
 use super::{
-    Book, costs, header,
+    Book, Kind, costs, header, items,
     module::{COUNTED, STATIC, counts, entries, equations, errors, links},
     text::{GENERATED, names, prose, section, table},
 };
@@ -23,7 +23,7 @@ pub(super) fn page(book: &Book, pass: &PassSource) -> String {
     page += &section("Permutations", &listing(pass, permutations));
     page += &section("Definitions", &entries(&header.definitions, "definition"));
     page += &section("Bindings", &bindings(&header.bindings, permutations));
-    page += &section("Structs", &structs(permutations));
+    page += &section("Structs", &structs(book, pass, permutations));
     page += &section("Cost", &cost(permutations));
     page += &section("Imports", &links(book, &pass.imports, 3));
     page.trim_end().to_owned() + "\n"
@@ -109,27 +109,25 @@ pub(super) fn kind(kind: &BindingKind) -> String {
 }
 
 /// The structs of all permutations, each once.
-fn structs(permutations: &[(String, Composed)]) -> String {
+fn structs(book: &Book, pass: &PassSource, permutations: &[(String, Composed)]) -> String {
     let mut text = String::new();
     let mut seen: Vec<String> = Vec::new();
     for layout in permutations.iter().flat_map(|(_, composed)| composed.reflect().structs) {
         if seen.contains(&layout.name) {
             continue;
         }
-        let rows: Vec<_> = layout
-            .members
-            .iter()
-            .map(|member| {
-                vec![
-                    member.offset.to_string(),
-                    format!("`{}`", member.name),
-                    format!("`{}`", member.ty),
-                    member.size.to_string(),
-                ]
-            })
-            .collect();
+        let own = items(&pass.source).into_iter();
+        let own = own.filter(|item| item.kind == Kind::Struct).find(|item| item.name == layout.name);
+        let declared = own.or_else(|| book.struct_of(&pass.imports, &layout.name).map(|(_, item)| item));
+        let parts = declared.map(|item| item.parts).unwrap_or_default();
+        let rows = layout.members.iter().map(|member| {
+            let said =
+                parts.iter().find(|part| part.name == member.name).map_or("", |part| part.docs.as_str());
+            let of = [member.offset.to_string(), format!("`{}`", member.name), format!("`{}`", member.ty)];
+            [of.to_vec(), vec![member.size.to_string(), prose(said)]].concat()
+        });
         text += &format!("### {}\n\n{} bytes, aligned to {}.\n\n", layout.name, layout.size, layout.align);
-        text += &table(&["offset", "member", "type", "bytes"], &rows);
+        text += &table(&["offset", "member", "type", "bytes", "what it is"], &rows.collect::<Vec<_>>());
         seen.push(layout.name);
     }
     text

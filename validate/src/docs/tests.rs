@@ -33,6 +33,7 @@ fn pages_say_what_is_known() {
         "![A leaf.](../../pictures/leaf.png)",
         "f(x) = x + 1",
         "| `x` | `f32` | metres, from 0 up |",
+        "| `place` | `Place` | see [Place](#place) |",
         "| `time` | `f32` | 12 | Seconds. |",
         "| `more` | 1 | 0 | 0 | 0 | 0 |",
         "[core/pass](../../modules/core/passes/pass.md)",
