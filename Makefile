@@ -63,10 +63,15 @@ portability: driver rust ## Every pass of the snapshots again, from its flat fil
 bench: driver build ## Ratios against baselines, interleaved in one run
 	$(AIRLIGHT) bench
 
-.PHONY: bless
-bless: driver build ## Accept changed snapshots, write the manifest and flat files; then look at the diff
+.PHONY: generated
+generated: build ## Lists, manifest, flat files and the book's pages, from the shaders
+	$(VALIDATE) list wgsl
 	$(VALIDATE) manifest wgsl
 	$(VALIDATE) flatten wgsl
+	$(VALIDATE) docs wgsl --out docs/src
+
+.PHONY: bless
+bless: driver build generated ## Accept changed snapshots and write what follows from the shaders; then look at the diff
 	INSTA_UPDATE=always AIRLIGHT_BLESS=1 cargo test $(CARGO_FLAGS)
 	# insta notes the path of the source as this machine has it.
 	sed -i.bak "1,6{/^source: /d;}" tests/tests/snapshots/*.snap && rm -f tests/tests/snapshots/*.bak

@@ -7,6 +7,8 @@
 //! World space is right-handed, y up, in metres; angles are in radians; extinction is in 1/m.
 
 pub mod baselines;
+#[cfg(doctest)]
+mod book;
 pub mod error;
 pub mod linear;
 pub mod media;

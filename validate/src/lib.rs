@@ -37,7 +37,11 @@ pub mod abi;
 #[cfg(feature = "command")]
 pub mod check;
 #[cfg(feature = "command")]
+pub mod docs;
+#[cfg(feature = "command")]
 pub mod flat;
+#[cfg(feature = "command")]
+pub mod list;
 #[cfg(feature = "command")]
 pub mod manifest;
 #[cfg(feature = "command")]

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The command `airlight-validate`.
 
+#[cfg(test)]
+mod book;
 mod command;
 
 use airlight_validate::{
@@ -63,6 +65,27 @@ enum Job {
         /// The newer one.
         new: PathBuf,
     },
+    /// Write the book's pages that follow from the shaders.
+    Docs {
+        /// Folder with `<system>/<module>.wgsl`.
+        #[arg(default_value = "wgsl")]
+        dir: PathBuf,
+        /// Folder of the book's chapters.
+        #[arg(long, value_name = "DIR", default_value = "docs/src")]
+        out: PathBuf,
+        /// Write nothing; fail if a page is not what would be written.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Write the lists of the crate, every module, pass and system of `DIR`, to `DIR/src/list.rs`.
+    List {
+        /// Folder with `<system>/<module>.wgsl`.
+        #[arg(default_value = "wgsl")]
+        dir: PathBuf,
+        /// Write nothing; fail if the file is not what would be written.
+        #[arg(long)]
+        check: bool,
+    },
     /// Print a pass as stand-alone WGSL.
     Flat {
         /// `<system>/<pass>` or `<system>/<pass>:<permutation>`.
@@ -123,6 +146,8 @@ fn main() -> ExitCode {
         Job::Check { dir, format, require, quiet } => command::check::run(dir, format, require, quiet),
         Job::Manifest { dir, check, out, release } => command::manifest::run(&dir, check, out, release),
         Job::Abi { old, new } => command::abi::run(&old, &new),
+        Job::Docs { dir, out, check } => command::docs::run(&dir, &out, check),
+        Job::List { dir, check } => command::list::run(&dir, check),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
         Job::Vendor { dir, passes, form, force } => command::vendor::run(&dir, &passes, form, force),
         Job::Verify { dir, format } => command::verify::run(&dir, format),

@@ -466,6 +466,17 @@ fn layout(module: &Module, layouter: &Layouter, handle: Handle<Type>) -> StructL
     }
 }
 
+/// The layout of a struct by its name; none of one that memory cannot hold.
+// Only pages of the book ask for structs that no resource has.
+#[cfg_attr(not(feature = "command"), allow(dead_code))]
+pub(crate) fn layout_of(module: &Module, name: &str) -> Option<StructLayout> {
+    let mut layouter = Layouter::default();
+    layouter.update(module.to_ctx()).ok()?;
+    let (handle, _) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
+    let layout = layout(module, &layouter, handle);
+    (!layout.members.is_empty() && layout.members.iter().all(|member| member.ty != "bool")).then_some(layout)
+}
+
 /// A type as WGSL spells it.
 fn spell(module: &Module, handle: Handle<Type>) -> String {
     let ty = &module.types[handle];

@@ -4,6 +4,17 @@
 // source: thesis Eq. 3.4 and Listing 3.1; Bavoil et al., "Image-space horizon-based ambient occlusion" (2008); Therrien et al., "Screen space indirect lighting with visibility bitmask" (2023).
 // note: The thesis leaves the fall-off f open. Here f(d) = (1 - (d/r)^2)^2 up to the radius r, then 0: visibility is 1 - f of an occluder
 // note: at the distance d, so it rises to 1 smoothly.
+// equation: f(d) = (1 − (d / r)²)² up to r, else 0;  visibility = 1 − f
+// equation: slice above the elevation h: open = 1 − sin h;  mean = tangent ½ (π/2 − h − sin h cos h) + normal ½ cos² h
+// error: weights and elevations within 1e-6; test ambient_places::occluders_count_less_with_distance_and_by_their_elevation.
+// error: slices within 2e-6; test ambient_functions::slices_above_a_horizon_are_their_integrals.
+// error: sectors exact; test ambient_functions::sectors_are_those_whose_middles_are_between.
+// parameter metres: distance of the occluder, from 0 up.
+// parameter radius: metres, above 0.
+// parameter towards: from the surface point to the other, metres in the world.
+// parameter normal: unit vector in the world.
+// parameter horizon_sine: sine of the horizon's elevation, 0..1.
+// parameter low, high: angles as parts 0..1 of the half-circle.
 
 /// How occlusion is looked for. 32 bytes.
 struct OcclusionSettings {

@@ -4,6 +4,16 @@
 // source: Keller and Heidrich, "Interleaved sampling" (2001), as in thesis 3.4; Roberts, the R2 sequence (2018).
 // note: A pixel has a stratified set of its own: a Hammersley set, shifted by a point of the R2 sequence. All pixels of the square together
 // note: have the hemisphere evenly, so a mean over it has little noise. Frames shift all sets on; frame 0 is the static pattern.
+// equation: point i of n: ((i + a) / n, fract(radical inverse of i in base 2 + b)), (a, b) a point of the R2 sequence per pixel
+// equation: direction = (√(1 − u²) cos 2πv, √(1 − u²) sin 2πv, u)
+// error: a direction in every stratum, places within 1e-6; test ambient_places::a_pixel_has_a_direction_in_every_stratum.
+// error: unit length within 1e-5; test ambient_functions::patterns_fill_the_hemisphere_and_frames_move_them.
+// parameter bits: any 32 of them.
+// parameter pixel: column and row, from 0.
+// parameter frame: number of the frame; 0 is the static pattern.
+// parameter index: number of the direction, from 0.
+// parameter samples: directions of a pixel, from 1 up.
+// parameter place: two coordinates, [0, 1).
 
 /// One over the plastic number, and its square: steps of the R2 sequence, by 2^32.
 const FIRST_STEP: u32 = 3242174889u;

@@ -5,6 +5,13 @@
 // note: A brick is 8 x 8 x 8 voxels. Its range of values covers those and one voxel around them, all that trilinear reads inside
 // note: of it touch. Its distance is Chebyshev's, in bricks, to the nearest occupied one: 0 where it is occupied itself.
 // note: A texture of distances of one texel, 0, skips nothing: for a volume without bricks.
+// equation: distance(b) = min over occupied bricks o of max(|bx − ox|, |by − oy|, |bz − oz|)
+// equation: samples = 1 + floor(min over axes of (wall − unit) / step − MARGIN), wall: where the bricks that are alike end
+// error: exact: no sample among other bricks is passed over;
+// error: test core_bricks::runs_of_samples_stay_among_bricks_that_are_alike_and_end_no_sooner_than_they_must.
+// error: ranges hold all that a trilinear read touches; test core_bricks::ranges_hold_all_that_a_trilinear_read_in_a_brick_touches.
+// parameter unit: place in unit space, the volume being 0..1.
+// parameter size: voxels of the volume along each axis, from 1 up.
 
 /// Voxels along a brick.
 const BRICK: u32 = 8u;

@@ -4,6 +4,19 @@
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
 // note: right-handed world, y up, metres; clip depth 0..1. Forward and reversed depth differ only in
 // note: `near_depth` and `far_depth`; an infinite far plane unprojects to a point with w = 0.
+// equation: ndc = (2 x / width − 1, 1 − 2 y / height);  P(z) = world_from_clip · (ndc, z, 1)
+// equation: ray: eye + t normalize(P(far).xyz − eye P(far).w);  orthographic: from P(near) along P(far) − P(near)
+// equation: distance(z) = dot(P(z).xyz − origin P(z).w, direction) / P(z).w
+// equation: side planes: row 4 ± row 1 (left, right) and row 4 ± row 2 (bottom, top) of clip_from_world
+// error: rays, distances and planes within the budgets of f32 that the test derives for each camera;
+// error: test core_camera::rays_distances_and_planes_of_perspective_cameras.
+// error: orthographic rays within 1e-6 of the size of the scene; test core_camera::orthographic_cameras_look_along_parallel_rays.
+// parameter pixel: pixels, (0, 0) the top left corner, (0.5, 0.5) the middle of the first.
+// parameter ndc: normalised device coordinates, -1..1 in the picture, y up.
+// parameter depth: value of the depth buffer, 0..1, in the camera's convention.
+// parameter limit: metres, positive.
+// parameter matrix: any matrix.
+// parameter side: 0..3.
 
 /// Perspective projection: all view rays leave the eye.
 const PERSPECTIVE: u32 = 0u;

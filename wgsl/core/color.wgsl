@@ -3,6 +3,11 @@
 // summary: Luminance, a filmic tone curve, and the sRGB transfer function.
 // source: IEC 61966-2-1 (sRGB); tone curve: K. Narkowicz, "ACES filmic tone mapping curve" (2015).
 // note: all colours are scene-linear with BT.709 primaries unless said otherwise.
+// equation: Y = 0.2126 r + 0.7152 g + 0.0722 b
+// equation: tone(x) = x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), cut to 0..1
+// equation: sRGB(x) = 12.92 x up to 0.0031308, else 1.055 x^(1/2.4) − 0.055
+// error: luminance within 3e-7 relative, tone curve 1e-6, sRGB 5e-6; test core/values::colours_follow_their_closed_forms.
+// parameter color: scene-linear RGB, from 0 up; of `srgb_from_linear` display-linear, 0..1.
 
 /// Relative luminance of a linear colour.
 fn luminance(color: vec3<f32>) -> f32 {

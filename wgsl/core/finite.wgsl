@@ -4,6 +4,10 @@
 // source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 // note: WGSL lets a compiler assume that floats are finite, so `x != x` may be folded away; the
 // note: test is made on the bits.
+// equation: finite(x) ⇔ bits(x) AND 0x7f800000 ≠ 0x7f800000
+// error: exact; test core/values::what_is_not_finite_is_replaced.
+// parameter x: any, NaN and infinities too.
+// parameter fallback: what stands for what is not finite, in the unit of `x`.
 
 /// True if `x` is neither NaN nor infinite.
 fn is_finite(x: f32) -> bool {

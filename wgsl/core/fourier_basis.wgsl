@@ -9,6 +9,21 @@
 // note: The series has period 2 in z_ray - z_stored, so that it jumps a second time at a difference
 // note: of 1: `guarded` therefore maps view rays to GUARD .. 1 - GUARD and leaves the rest of 0..1 to blockers.
 // note: Group g, 0 .. M/4 - 1, holds the bases 4g+1 .. 4g+4: (sin, cos) of c_(2g+1) z and of c_(2g+2) z.
+// equation: V(z_ray, z) = ½ + Σ_(k=1..M/2) (2 / c_k) sin(c_k (z − z_ray)),  c_k = π (2k − 1)
+// equation:              = ½ + Σ_k (2 / c_k) (cos(c_k z_ray) sin(c_k z) − sin(c_k z_ray) cos(c_k z))
+// equation: bases of texel z: sin(c_k z), cos(c_k z);  coefficients of a ray: (2 / c_k) cos(c_k z_ray), −(2 / c_k) sin(c_k z_ray)
+// equation: Lanczos window: coefficients times sinc((2k − 1) / M), sinc(x) = sin(π x) / (π x)
+// equation: guarded(u) = GUARD + (1 − 2 GUARD) u
+// error: bases within 1e-6 + 8e-7 c_k, by the step from group to group or at once; test core_fourier::bases_are_sines_and_cosines.
+// error: coefficients within 1e-6, the whole series 1e-5; test core_fourier::coefficients_and_series_are_those_of_the_reference.
+// error: guarded within 1.5e-7; test core_fourier::the_guard_keeps_rays_from_both_ends.
+// parameter a, b: (sin, cos) of an angle.
+// parameter group: number of four bases, 0 .. M/4 - 1.
+// parameter bases: M, a multiple of 4.
+// parameter basis: sines and cosines, -1..1.
+// parameter stored: texel, 0..1.
+// parameter z: depth 0..1.
+// parameter half_turns: angle over pi, any.
 
 const PI: f32 = 3.141592653589793;
 

@@ -2,6 +2,9 @@
 #define_import_path airlight::core::tangent_frame
 // summary: Directions at right angles to a normal.
 // source: Duff et al., "Building an orthonormal basis, revisited" (2017).
+// equation: s = sign(z), a = −1 / (s + z), b = x y a:  (1 + s x² a, s b, −s x), (b, s + y² a, −y), n
+// error: lengths within 1e-6, right angles 2e-6; test core/directions::frames_are_orthonormal_and_right_handed.
+// parameter normal: unit vector.
 
 /// Columns: three unit vectors at right angles, the last of which is `normal`, unit.
 fn tangent_frame(normal: vec3<f32>) -> mat3x3<f32> {

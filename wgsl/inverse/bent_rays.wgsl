@@ -7,6 +7,17 @@
 // note: Rays are straight up to the box and are not refracted by its faces. They end where they leave it, at a surface, whose depth counts along
 // note: the bend, or after `most` steps. A sample lies in the middle of its step; the last step is as long as there is way left.
 // note: The index is kept to 0.01..100; what is not finite counts as 1.
+// equation: d(n v) / ds = ∇n, |v| = 1:  x ← x + ds v,  v ← (n v + ds ∇n) / |n v + ds ∇n|
+// error: rays and their weights within 1e-4, transposed pairs 1e-6;
+// error: test inverse_bent::bent_rays_are_those_of_the_reference_and_scatter_with_the_same_weights.
+// error: where the index rises evenly errors fall with the step;
+// error: test inverse_bent::an_index_that_rises_evenly_bends_rays_upwards_along_catenaries.
+// parameter world: direction in the world, metres.
+// parameter refraction: index of refraction, one texel a voxel; 0.01..100.
+// parameter unit: place in unit space.
+// parameter place: in unit space.
+// parameter along: direction in unit space, per metre.
+// parameter step: length of a step, metres, above 0.
 
 #import airlight::core::finite::finite_or
 #import airlight::inverse::slice_steps::{SliceView, SliceRay, SlicePart}

@@ -6,6 +6,17 @@
 // note: basis function reaches, always in the same order. A sample lies on the middle plane of its slice: of rays that cross the slice whole where
 // note: they cross that plane, of others beside a point of the slice. So a pixel with a sample in a support has its middle in the projection of
 // note: the support on that plane, or of its extrusion over the slice; the projection of a box lies within that of its corners.
+// equation: (W' y)_i = Σ over pixels p, slices s of w_ps φ_i(x_ps) y_p, in a fixed order
+// error: transposed pairs within 1e-5: <Wx, y> = <x, W'y>;
+// error: test inverse::pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose.
+// error: no pixel is left out behind the eye; test inverse::planes_that_go_on_behind_the_eye_are_collected_from_all_their_pixels.
+// parameter voxel: numbers along each axis, from 0.
+// parameter size: voxels along each axis, from 1 up.
+// parameter axis: unit vector, one of x, y and z.
+// parameter vector: of unit space or voxels.
+// parameter slice: number, 0 .. slices - 1.
+// parameter pixel: column and row of a pixel's middle less a half: (0, 0) the first.
+// parameter begin, end: corners of a part of the picture, pixels.
 
 #import airlight::inverse::slice_steps::SliceView
 #import airlight::inverse::basis::triangle_weights

@@ -9,6 +9,16 @@
 // note: every change is slower where thousands of voxels come and go.
 // note: Voxels that many rays meet go slower: one over the row sums of W'C W and the diagonals of the regularisers precondition the system.
 // note: Each channel is a system of its own with its own lengths of steps.
+// equation: minimise Σ C (W a − o)² + l |L a|² + s |a|² + t |a − 1|², low ≤ a ≤ high
+// equation: r = −½ gradient, 0 at a bound it pushes against;  β = max(0, (<r, M r> − <r, M r₋>) / <r₋, M r₋>);  d = M r + β d₋
+// equation: step = <r, d> / <d, A d>;  M: pace 1 / (row sum of W'C W + 42 l + s + t)
+// error: solutions reach the least squares between bounds within 1e-9 of a descent;
+// error: test inverse_solver::iterations_come_to_the_least_squares_between_bounds.
+// parameter value: of a voxel, between the bounds.
+// parameter gradient: half gradient of the misfit there.
+// parameter sent: from 0 up.
+// parameter descent, curvature: sums over all voxels.
+// parameter before, product: sums over all voxels.
 
 /// One volume that is solved for. 48 bytes.
 struct SolverPart {

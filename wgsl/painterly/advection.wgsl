@@ -4,6 +4,14 @@
 // source: Cabral and Leedom, "Imaging vector fields using line integral convolution" (1993); dissertation on painterly volume rendering, 6.1.3.
 // note: Directions have no sign: each step takes the one of both that turns less, and a line ends where it would turn by more than
 // note: 60 degrees, where there is no direction, and at the edge of the picture. Steps are of the midpoint rule.
+// equation: mean along the line: m = (n_0 + Σ n_i) / (1 + count), n hashed noise;  shown: ½ + g (m − ½),  g from 1 to √count by contrast
+// equation: step: x ← x + h v(x + ½ h v(x)), the sign of v kept
+// error: means along lines of a constant field within 1e-5; test painterly_advect::a_constant_field_gives_means_along_lines.
+// error: where there is no direction within 1e-5; test painterly_advect::lines_end_where_there_is_no_direction_or_a_kink.
+// parameter pixel: column and row, from 0.
+// parameter seed: any bits.
+// parameter curvature: in z and w (cos 2a, sin 2a) of the direction in the picture, 0 where there is none.
+// parameter position: pixels.
 
 #import airlight::core::finite::finite_or
 #import airlight::core::noise::{hash_of_three, unit_from_hash}

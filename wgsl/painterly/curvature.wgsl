@@ -8,6 +8,18 @@
 // note: A voxel has three sides and may be skewed: with B, which takes metres to voxels, gradients become B^T g and second
 // note: derivatives B^T H B. Both are scaled by the greatest entry of B, so that voxels of any size neither overflow nor vanish.
 // note: Where both curvatures are alike there is no direction, and where the value hardly changes there is no curvature.
+// equation: (a b; b c) = side Pᵀ H P / |g| in a basis P of the tangent plane;  κ = ½ (a + c) ± √(¼ (a − c)² + b²)
+// equation: direction of κ₁: half the angle of (½ (a − c), b);  in metres: gradient Bᵀ g, second derivatives Bᵀ H B
+// error: eigenvalues within 1e-4, directions 0.05 degrees; test painterly_curvature_functions::curvatures_are_eigenvalues_in_any_space.
+// error: spheres in any box within 2 % of their radius; test painterly_curvature::spheres_bend_by_their_radius_in_any_box.
+// parameter double: unit vector (cos 2a, sin 2a).
+// parameter unit_from_world: world, metres, to unit space; affine.
+// parameter size: voxels along each axis.
+// parameter along: any length.
+// parameter point: metres in the world.
+// parameter linear_sampler: linear, clamped to the edge.
+// parameter curvatures: of the picture's texel, the greater and the lesser, 1/m.
+// parameter range: 1/m, positive.
 
 #import airlight::core::camera::Camera
 #import airlight::core::finite::{finite_or, is_finite}

@@ -8,6 +8,28 @@
 // note: central differences of quadratic fields are exact between voxels too.
 // note: 4.1.6 compares depths after projection of two frames, which change with every movement; here the distance that is
 // note: predicted for a point along its view ray is compared with the distance found there.
+// equation: solid: opacity(v(x)) ≥ iso;  secant: t = t₀ + (t₁ − t₀) (iso − o₀) / (o₁ − o₀)
+// equation: Phong: albedo (k_d max(0, <n, l>) E + A) + k_s max(0, <r, l>)^α E
+// equation: flow = pixel now − pixel before;  tolerance = pixels side √(1 − c²) / c + voxel
+// error: hits within 0.1 voxel of dense sampling; test painterly::hits_are_those_of_dense_sampling.
+// error: gradients of quadratic fields within a degree and 2 %; test painterly::gradients_of_quadratic_fields_are_within_a_degree.
+// error: flow within 0.1 pixel; test painterly::flow_is_the_motion_of_the_point.
+// error: Phong lighting within 2e-4; test painterly_edges/shading::light_is_phong_s.
+// parameter texel: of the volume, any float.
+// parameter scale, offset: from texels to values 0..1.
+// parameter iso_value: opacity, above 0 up to 1.
+// parameter least, greatest: values 0..1.
+// parameter at: place along the ray.
+// parameter opacity: 0..1.
+// parameter origin, direction: of the view ray in the world, metres and unit vector.
+// parameter plane: normal and offset in the world, metres.
+// parameter unit: place in unit space.
+// parameter unit_from_world: world, metres, to unit space; affine.
+// parameter unit_gradient: change of the value over the volume, along each axis.
+// parameter point: metres in the world.
+// parameter voxel: shortest side of a voxel, metres.
+// parameter tolerance: metres, from 0 up.
+// parameter entries: of the table, from 1 up.
 
 #import airlight::core::camera::{Camera, matrix_row}
 #import airlight::core::finite::finite_or

@@ -4,6 +4,13 @@
 // source: Ramalhao, "Painterly stylization of real-time volume rendering" (2010), 4.2.1, 4.2.2, Table 5.1.
 // note: Sizes in Table 5.1 have no unit: here they are pixels of the picture that is drawn, whatever the size of the sources.
 // note: A stroke keeps the point of the volume that it was put on, not a pixel: flow read at its old pixel would err and add up.
+// equation: chunks = ⌈strokes / 32⌉, blocks = ⌈size / (8, 4)⌉
+// error: exact; test painterly_strokes::coarse_strokes_come_first_and_old_ones_before_new_ones.
+// parameter three: numbers of the coarse, medium and fine layer.
+// parameter layer: 0..2.
+// parameter strokes: how many, from 0.
+// parameter size: columns and rows, pixels.
+// parameter state: STROKE_GONE to STROKE_HIDDEN.
 
 /// Layers of strokes: coarse 0, medium 1, fine 2.
 const LAYERS: u32 = 3u;

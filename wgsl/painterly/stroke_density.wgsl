@@ -7,6 +7,13 @@
 // note: The text counts strokes with the opacity they have. Then a gap goes on giving birth while new strokes fade in, and
 // note: strokes that fade out are deleted twice. `anticipation` counts the opacity that they fade to instead.
 // note: The text deletes with a probability that it does not give: 1 - D_max / D reaches D_max in one step, on average.
+// equation: D = Σ κ mix(opacity, fades to, anticipation) brush
+// equation: birth: p = min(p_layer, max(0, D_min − D) / (κ opacity area));  deletion: p = 1 − D_max / D where D > D_max
+// error: densities within 1e-8, births 1e-5, what is left after deletion 1e-6;
+// error: test painterly_stroke_functions::births_fill_gaps_and_deletions_reach_the_maximum.
+// parameter anticipation: 0..1: how much of the opacity to come counts.
+// parameter density, least, most: densities, from 0 up.
+// parameter unit: kappa, density of one opaque stroke, above 0.
 
 /// What a stroke adds to the density of its layer at a texel. `unit`: kappa. `opacity`, `fades_to`, `brush`: 0..1.
 fn density_of_stroke(unit: f32, opacity: f32, fades_to: f32, anticipation: f32, brush: f32) -> f32 {

@@ -5,6 +5,19 @@
 // note: The text looks numbers of 8 bits up in a texture and places where `random <= p`: then p = 0 places with .0039. Here a
 // note: hash of pixel, layer, frame and seed is drawn with 24 bits and compared by `<`: 0 never places, 1 always.
 // note: The text has no hysteresis: strokes on a threshold would leave and be born again with every change of the gradient.
+// equation: layer = number of thresholds ≤ magnitude;  stays: begin / (1 + h) ≤ magnitude < end (1 + h)
+// equation: chance: hash / 2³² < p, 24 bits
+// error: frequencies within what statistics allow;
+// error: test painterly_stroke_placement::placement_draws_evenly_and_anew_in_every_pixel_layer_and_frame.
+// error: thresholds exact; test painterly_stroke_placement::thresholds_divide_layers_and_hysteresis_holds_strokes_in_theirs.
+// parameter magnitude: of the gradient, from 0 up; negative for no surface.
+// parameter thresholds: where layers end, ascending.
+// parameter pixel: column and row, or number in the queue, from 0.
+// parameter layer: 0..2.
+// parameter frame: number of the frame, from 0.
+// parameter seed: any bits.
+// parameter probability: 0..1.
+// parameter pixels: how many, from 1 up.
 
 #import airlight::core::noise::{hash_of_three, unit_from_hash}
 #import airlight::painterly::stroke::NO_LAYER

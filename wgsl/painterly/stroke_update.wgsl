@@ -8,6 +8,19 @@
 // note: distance of the point is compared with the distance buffer at its new place, within the slope of a few pixels.
 // note: The text takes 5 % of the new orientation, a third of the colour and 90 % of the opacity in a frame. The last fades in
 // note: a frame, against "seamless"; 10 % may be meant. All are rates a sixtieth of a second here, at any frame rate.
+// equation: share in a step of s seconds: 1 − (1 − rate)^(60 s);  x ← x + share (goal − x), angles by the shorter way modulo π
+// equation: across the gradient (gx, gy) of the picture: φ = atan2(gx, −gy)
+// error: rates within 1e-6, over many frames 1e-5; test painterly_stroke_functions::rates_are_the_same_at_any_frame_rate.
+// error: orientations within 5e-6; test painterly_stroke_functions::orientations_turn_the_shorter_way_modulo_half_a_turn.
+// error: directions in the picture within 2e-4;
+// error: test painterly_stroke_functions::strokes_lie_at_right_angles_to_the_gradient_in_the_picture.
+// parameter old, goal: radians.
+// parameter rate: share of the way, 0..1.
+// parameter world: metres in the world.
+// parameter picture_size: pixels.
+// parameter seconds: from 0 up.
+// parameter otherwise: radians.
+// parameter orientation: radians, -pi/2..pi/2.
 
 #import airlight::core::camera::{Camera, Ray}
 #import airlight::painterly::iso_surface::{direction_in_picture, distance_tolerance}

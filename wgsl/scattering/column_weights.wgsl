@@ -5,6 +5,15 @@
 // note: Unlike algorithm modules a callback holds bindings, those that passes share: the filters of Fourier bases and of
 // note: moments and the rank structure weigh columns alike. A light's angular fall-off and texture belong to its light rays, that is to
 // note: columns.
+// equation: slices: w_i = exp(−τ i), τ = σ radius_max / (width k);  around a light: transmittance times phase, over columns linear in the light angle
+// equation: projective: w_i = T(x_i) (1 − exp(−σ Δ_i)) / σ
+// error: prefix means with weights and fall-offs within 1e-4; test moments_weights::filter_takes_weights_and_fall_offs.
+// parameter row: of the map, from 0.
+// parameter size: columns and rows of the map.
+// parameter first: column from which weights count, up to `column`.
+// parameter column: of the map, from 0.
+// parameter width: columns of the map.
+// parameter unit: 0..1 along the row.
 // definition AVERAGE: all columns of slices, and all metres of projective rows, weigh alike.
 // definition LOCAL: rows around a spot or point light.
 // definition PROJECTIVE: projective rows, whose texels differ in length. Not with LOCAL or COLORS.

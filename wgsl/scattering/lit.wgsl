@@ -4,6 +4,19 @@
 // source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
 // note: Unlike algorithm modules a callback holds bindings, those that passes share. An engine that keeps its shadow maps
 // note: in another way replaces this file: only `lit_at` and `marched_visibility` read them.
+// equation: mean = Σ w_i lit(x_i) / Σ w_i,  w_i = exp(−σ i Δ);  around a light: steps of equal angle, w_i = p(cos_i) exp(−σ path_i)
+// error: marched pictures: visibility within 4.9e-4 of the closed form, radiance 1.5e-3;
+// error: test scattering/closed_forms::an_empty_shadow_map_lights_everything_and_a_slab_has_its_closed_form.
+// error: around a light within 1 % of the airlight integral; test local_lights::without_blockers_radiance_is_that_of_the_airlight_integral.
+// parameter point: metres in the world.
+// parameter origin, direction: of the view ray in the world, metres and unit vector.
+// parameter distance: metres, from 0 up.
+// parameter extinction: 1/m, from 0 up.
+// parameter steps: how many, from 1 up.
+// parameter offset: 0..1, where in each step the sample lies.
+// parameter span: begin and end on the ray, metres.
+// parameter g: mean cosine, -0.999..0.999.
+// parameter away: metres, above 0.
 // definition SHADOW_ARRAY: shadow maps of several views.
 // definition LIGHT_TEXTURE: a texture colours the light.
 // binding shadow_map: depth of the standard shadow map; without SHADOW_ARRAY.

@@ -11,6 +11,22 @@
 // note: The thesis splits a point light into six spots; here six faces of shadow maps fill one rectified map, whose
 // note: light angles go from 0 to pi.
 // note: Both ways are attenuated: view ray of length t, and light ray of length d.
+// equation: tan α = t sin θ / (D − t cos θ);  t(α) = D sin α / sin(θ + α);  dt / d² = dα / (D sin θ)
+// equation: airlight = ∫ p(cos) exp(−σ (t + d)) / (d² + r²) dt, by 8 Gauss-Legendre points a side in asinh of the angle
+// error: airlight within 1e-3, nearer than twice the radius 5e-2; test scattering_modules::airlight_is_the_integral.
+// error: angles and distances within the budgets that the test derives; test scattering_modules::angles_and_distances_belong_together.
+// parameter position: of the light in the world, metres.
+// parameter eye, fallback: of the world, metres, and a unit vector.
+// parameter texel: as `local_slice_texel` made it.
+// parameter angle: radians.
+// parameter at_light: light angle, radians, 0..pi.
+// parameter along: metres along the ray, from 0 up.
+// parameter x: from 0 up.
+// parameter extinction: 1/m, from 0 up.
+// parameter g: mean cosine, -0.999..0.999.
+// parameter limit: metres, above 0.
+// parameter azimuth: radians.
+// parameter integral: 1/(m sr), from `airlight`.
 
 #import airlight::core::camera::{Camera, forward_direction, far_plane_distance}
 #import airlight::core::phase::henyey_greenstein

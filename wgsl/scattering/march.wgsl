@@ -4,6 +4,14 @@
 // source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
 // note: Both marches run from the far end towards the eye by Horner's rule, sum = sum * q + V, with q the
 // note: transmittance of one step: the weights of Eq. 4.8 then cost one multiplication and no exponential.
+// equation: row: V̄ = (Σ_(i<⌊s⌋) q^i V_i + last) / ((1 − q^s) / (1 − q)), q = exp(−τ), by Horner's rule from the far end
+// equation: shadow map: V̄ = Σ q^i [z_i ≤ stored_i] / Σ q^i
+// error: the exact sum over the nearest row, in the mean 4e-4;
+// error: test scattering/march::march_along_rows_is_the_exact_sum_over_the_nearest_row.
+// error: a slab within 4.9e-4; test scattering/closed_forms::an_empty_shadow_map_lights_everything_and_a_slab_has_its_closed_form.
+// parameter map: depths, r32float or a depth format.
+// parameter row: of the map, from 0.
+// parameter steps: how many, from 1 up.
 
 #import airlight::core::finite::finite_or
 #import airlight::core::light::{Light, shadow_position}

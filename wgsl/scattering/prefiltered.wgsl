@@ -4,6 +4,12 @@
 // source: thesis 4.3.1 and 4.3.3, Eq. 4.6 and 4.9, Listing 4.4; visibility_rank and visibility_moments for the others.
 // note: Unlike algorithm modules a callback holds bindings, those that passes share. All methods answer the same question:
 // note: which share of the first texels of a row is lit at the depth of a ray.
+// equation: none of its own: the mean over the first texels of a row by the method that was built, rows mixed by their share
+// error: by the method: see visibility_fourier, visibility_moments, visibility_rank and visibility_wavelet;
+// error: test rank/pictures::pictures_mix_the_rows_about_a_ray_around_the_seam_too.
+// parameter row: of the map, whole.
+// parameter depth: of the ray, 0..1.
+// parameter color: 0..2.
 // definition RANK: rank queries, bits of a depth as in the pass `rank`; Fourier bases without RANK and MOMENTS.
 // definition WAVELET: by a wavelet matrix, as of the pass `wavelet`; with RANK, an even number, and AVERAGE.
 // definition MOMENTS: six moments.

@@ -11,6 +11,22 @@
 // note: Unweighted means need the lengths of the texels for the same reason.
 // note: One such row gives nearly all texels to the nearest metres: up to four splits with bounds in geometric progression
 // note: share the columns.
+// equation: row: Y / X, depth: Z / X, columns: u = (x − n) / (f − n) · f / x in each split;  orthographic: Y, Z − tilt X, x
+// equation: W(s) = (1 − exp(−σ s)) / σ;  share of a texel: (W(x) − W(begin)) W(end) / ((W(end) − W(begin)) W(x))
+// error: places and rays within the budgets of f32 that the test derives;
+// error: test projective/geometry::shader_places_points_and_rays_as_the_reference_does.
+// error: marched rows within 0.004 of the exact sums; test projective/pictures::marched_rows_are_the_exact_sums.
+// parameter width: columns of the map.
+// parameter height: rows of the map.
+// parameter row: of the map, row j at j.
+// parameter column: of the map, from 0.
+// parameter point: metres in the world.
+// parameter x, z: X and Z, metres.
+// parameter map: depths, r32float.
+// parameter split: 0..3.
+// parameter reach: metres along the reference ray for one of X.
+// parameter distance: metres, from 0 up.
+// parameter metres: from 0 up.
 
 #import airlight::core::fourier_basis::{GUARD, guarded}
 #import airlight::core::prefix_sum::one_minus_exp

@@ -5,6 +5,12 @@
 // note: Unlike algorithm modules a callback holds bindings, those that passes share, and here the workgroup's memory: after
 // note: the sort `counts` is free for what a pass makes of the ranks.
 // note: Rows of more than 2048 columns are not taken: their order would not fit into workgroup memory.
+// equation: value = ⌊depth (2^bits − 1) + ½⌋;  start(v) = texels with a smaller value;  rank = start(value) + equal ones before
+// error: exact; test rank/counts::counts_are_exactly_those_of_the_stepped_map.
+// parameter column, row, columns: of the rectified map, 2048 columns at most.
+// parameter value: 0 .. 2^RANK - 1, or NONE.
+// parameter block, blocks: of 32 columns.
+// parameter rankers: 1..64.
 // definition RANK: bits of a depth, 8 to 12.
 // binding rectified: the rectified map, r32float or a depth format; non-finite values count as 1, lit.
 // binding rank_starts: out, r32uint: how many texels of a row have a smaller value, two of 16 bits a texel, a row each.

@@ -8,6 +8,21 @@
 // note: x is the radius, at right angles to the light. The distance along the reference ray of the thesis is
 // note: the same up to a factor per slice: the texel is the same.
 // note: The whole convention, with the range of rows, is docs/src/rectification.md.
+// equation: θ: angle from the direction TOWARDS the light;  row = (azimuth − azimuth_min) rows / range;  column = t sin θ / radius_max width
+// equation: depth = GUARD + (1 − 2 GUARD) (θ − θ_min) / (θ_max − θ_min);  lit ⇔ θ_ray ≤ θ_stored
+// equation: reference: k = sin of the bisectrix of the fastest and slowest ray;  optimum (Eq. 4.12): k = √(k_min k_max)
+// error: frames and slices within the budgets that the test derives; test scattering/frame::frame_and_slices_are_those_of_the_reference.
+// error: maps within 1e-4; test scattering/rectified_map::rectified_maps_are_those_of_the_reference.
+// error: greatest_sine within 2 %; test scattering_modules::greatest_sine_of_a_slice_is_within_two_percent.
+// parameter point: homogeneous, world.
+// parameter azimuth: radians.
+// parameter row: of the map, row j at j.
+// parameter far, limit, distance_limit: metres, above 0.
+// parameter angle, angle_min, angle_max: to the light, radians, 0..pi.
+// parameter texel: as `slice_texel` made it.
+// parameter depth: 0..1; of `epipolar_ray` that of the depth buffer.
+// parameter ndc: normalised device coordinates, -1..1.
+// parameter radius, height: metres.
 
 #import airlight::core::camera::{
     Camera, view_ray, side_normal, forward_direction, far_plane_distance, matrix_row

@@ -6,6 +6,18 @@
 // note: `depth` is the ray's, 0..1; `layers` is M / 4; `windowed` takes the Lanczos window, for M of 8 and more.
 // note: With colours each has layers of its own, one after the other, and the layer after all holds their mean fall-off:
 // note: the constant 1/2 of the series is weighted by it as the bases are.
+// equation: V̄ = ½ + Σ_k a_k · mean of B_k over the texels of the ray;  with fall-off: ½ F̄ + Σ_k a_k · mean of F B_k
+// error: average visibility on foliage within 0.005 by 32 bases;
+// error: test scattering/figures::average_visibility_on_foliage_falls_with_the_bases_to_its_figure.
+// error: 8 bits add 0.002 at most; test scattering/figures::average_visibility_on_a_plane_under_an_overhead_light_reaches_its_figure.
+// parameter depth: of the ray, 0..1.
+// parameter layers: M / 4, from 1 up.
+// parameter layer: 0 .. layers - 1.
+// parameter windowed: whether with the Lanczos window.
+// parameter bases: prefix means of bases, 0..1 stands for -1..1, four a layer.
+// parameter bases_sampler: linear; clamp to edge in u, repeat in v.
+// parameter place: texture coordinates, or of the nearest texel column and row.
+// parameter colors: 1 or 3.
 
 #import airlight::core::fourier_basis::{
     Series, series_first, series_next, coefficients, coefficients_lanczos, basis_from_stored

@@ -13,6 +13,19 @@
 // note: Bits do not filter: bilinear reads are four loads, and one solution for the mean of the four.
 // note: Fall-off. Where a light's fall-off differs from column to column, the moments are means weighted by it too, and a
 // note: layer more holds its mean: their product is the mean of visibility times fall-off, for each colour.
+// equation: V̄ between the bounds of the share of stored depths ≥ z_ray: upper + MOMENT_BLEND (lower − upper)
+// equation: stored: round((m · ½ + ½) (2²¹ − 1)), six of 21 bits in 128
+// error: stored moments within 0.57 steps; test moments/filter::texels_hold_the_moments.
+// error: prefix means within 1e-4; test moments/filter::filter_writes_prefix_means.
+// error: visibility read within 2e-3; test moments/filter::reads_are_nearest_or_bilinear.
+// parameter depth: of the ray or texel, 0..1.
+// parameter texel: as `pack_moments` made it.
+// parameter map: packed moments, rgba32uint.
+// parameter color: 0 .. colors - 1.
+// parameter colors: 1 or 3.
+// parameter place: column and row; fractional as of `texels_around`.
+// parameter size: columns and rows of the map.
+// parameter moments: means of Chebyshev polynomials, -1..1.
 
 #import airlight::core::fourier_basis::GUARD
 #import airlight::core::moment_bounds::{Moments, mix_moments, moments_at, share_bounds}

@@ -20,6 +20,20 @@
 // note: weight left of the block, and interpolated for each ray. With u the optical depth of the ray left of the block and
 // note: u0, u1 = 2 u0 those of the stored ones that errs by at most |u - u0| |u - u1| / 62. The lesser one is that of the
 // note: ray that crosses texels fastest, at right angles to the light where the row has such a ray.
+// equation: V̄ = 1 − |{i < s : z_i < z_ray}| / s,  count = base + popcount(mask AND low(rank mod 32)) + popcount(less AND low(column mod 32))
+// equation: weighted: shares of exp(−τ i) in place of ones
+// error: counts exact; test rank/counts::counts_are_exactly_those_of_the_stepped_map.
+// error: weighted means within 8 (1 − e^-a), a the optical depth of a texel; test rank/weighted::weighted_means_err_by_no_more_than_proven.
+// parameter depth: of the ray, 0..1.
+// parameter less, limit: a bit a column; four bits of the ray's value.
+// parameter planes: bit planes, four a layer.
+// parameter bits: of a depth, 8..12.
+// parameter row: of the map, from 0.
+// parameter cells: mask and base of each chunk and block.
+// parameter starts: texels with a smaller value, two a word.
+// parameter columns: of the map, 2048 at most.
+// parameter texels: that the ray covers, fractional.
+// parameter optical_step, least_step: optical depths of a texel, from 0 up.
 
 #import airlight::core::prefix_sum::one_minus_exp
 

@@ -8,6 +8,16 @@
 // note: One texel of rgba32uint holds 32 places of a level: a bit of the digit each in x and y, and in z and w four sums of
 // note: 16 bits. The sum d is that of the places in the next level of the first digits 0..d from this block on. So the
 // note: difference of two sums is a place, and of the sums of two blocks how many smaller digits lie between them.
+// equation: level by level: low ← next(d) + equal before low, high the same, dark ← dark + smaller between low and high
+// equation: V̄ = 1 − (dark + part [end dark]) / s
+// error: exactly what rank queries count; test wavelet::pictures_are_those_of_rank_queries.
+// parameter texel: two bits of 32 places and four sums.
+// parameter wavelet: levels one after the other along columns, rgba32uint.
+// parameter first: first column of the level.
+// parameter blocks: of 32 places, a level.
+// parameter row: of the map, from 0.
+// parameter depth: of the ray, 0..1.
+// parameter digit: 0..3.
 
 #import airlight::scattering::visibility_rank::{rank_value, low_bits, LEAST_TEXELS}
 

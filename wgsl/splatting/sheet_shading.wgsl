@@ -4,6 +4,19 @@
 // source: Zhang and Crawfis, 3.1 Eq. 1 and 5, 4.1 steps 16 to 20; Mueller et al., "Splatting without the blur" (1999).
 // note: Means are classified after they are added up (post-classification). The part of the light that a sheet takes from
 // note: itself is the mean over its depth, so that a picture of few sheets is neither too bright nor too dark.
+// equation: mean of exp(−x) over 0..τ = (1 − exp(−τ)) / τ;  ∇f = (Δa b×c + Δb c×a + Δc a×b) / (a · b×c)
+// equation: scattered = albedo opacity (ambient + E p_HG(cos));  Phong: opacity (color (A + E/π k_d <n, l>) + E/π k_s <r, e>^α)
+// error: mean transmittance within 1.5e-6; test splatting_functions::the_mean_transmittance_is_that_of_the_depth.
+// error: gradients of linear fields within 5e-6 relative; test splatting_functions::gradients_of_linear_fields_are_exact.
+// parameter transfer: one row, linear RGB and opacity.
+// parameter linear_sampler: linear, clamped to the edge.
+// parameter value: mean value of the sheet, from 0 up.
+// parameter optical_depth: from 0 up.
+// parameter a, b, c: vectors in the world, metres, not in one plane.
+// parameter changes: of the field along each of the three.
+// parameter albedo, color: linear RGB, 0..1.
+// parameter opacity: 0..1.
+// parameter cosine: -1..1.
 
 #import airlight::core::phase::henyey_greenstein
 #import airlight::core::transfer_function::classified

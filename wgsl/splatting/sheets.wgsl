@@ -5,6 +5,14 @@
 // note: The normal is the sum of the direction in which the eye looks and that in which light goes, or of the reverse of the first
 // note: where they differ by more than a right angle; so the light always meets the first sheet first, and view and light
 // note: rays cross sheets at 45 degrees or more from the sheet. With that choice no pair of directions leaves it undefined.
+// equation: height = n · x;  sheet i: first + i thickness ≤ height < first + (i + 1) thickness;  metres = thickness / |n · d|
+// equation: value = c + m / 2⁹ + f / 2¹⁴, multiples of 2⁻⁹, 2⁻⁵ and 2⁻⁵
+// error: parts exact, their sum within 1.5e-6; test splatting_functions::exact_parts_are_multiples_that_half_floats_hold.
+// parameter point: metres in the world.
+// parameter height: metres along the normal.
+// parameter value: from 0 up to 4 in all.
+// parameter texel: sums of parts.
+// parameter direction: unit vector in the world.
 
 /// All sheets of a picture. 32 bytes.
 struct Sheets {

@@ -4,6 +4,15 @@
 // source: Zhang and Crawfis, 2.1 and 4.1, steps 3 and 12 to 14.
 // note: Voxel space has the middle of voxel (i, j, k) at (i, j, k). Kernels are round there, and ellipsoids in the world, so that
 // note: volumes of unequal, turned or skewed voxels need nothing else.
+// equation: voxel (i, j, k) = (index mod w, (index / w) mod h, index / (w h));  reach along d = radius |Mᵀ d|, M: voxels to metres
+// error: footprints of a constant volume add up to a constant within 1 %;
+// error: test splatting_pictures::footprints_of_a_constant_volume_add_up_to_a_constant.
+// parameter index: number of the voxel, x fastest.
+// parameter matrix: affine.
+// parameter direction: unit vector in the world.
+// parameter middle: metres in the world.
+// parameter radius: voxels, above 0.
+// parameter vertex: 0..5.
 
 #import airlight::core::camera::{Camera, ORTHOGRAPHIC, towards_viewer, matrix_row}
 

@@ -5,6 +5,23 @@
 // note: Heights along the sheets' normal take the place of depths: light climbs along every ray, so that of two points on one light ray
 // note: the lower is the nearer. Footprints end at surfaces, so that a texel of the shadow buffer keeps what reached its
 // note: surface. A comparison of heights then is right before, within and behind the volume (regions 1, 2 and 3).
+// equation: share = (h₁ − h₀) / thickness;  mean before the surface = mean / share;  light = Σ corners weight [surface not in range] reached
+// error: shadows of polygons are those of rays, 1 % of what is lit; test splatting_polygons::shadows_of_polygons_are_those_of_rays.
+// error: what lies behind a surface shades it by less than 3 %; test splatting_surfaces::what_lies_behind_a_surface_does_not_shade_it.
+// parameter height: metres along the sheets' normal.
+// parameter index: number of the sheet, from 0.
+// parameter climbs: whether the ray's height grows along it.
+// parameter surface: metres along the normal; NO_SURFACE for none.
+// parameter heights: of a sheet's or a part's ends, metres; of `light_on_surface` r32float, of the first surface along light rays.
+// parameter mean: of the sheet's values, from 0 up.
+// parameter point: metres in the world.
+// parameter place: in the buffer, 0..1.
+// parameter size: columns and rows.
+// parameter tap: 0..3.
+// parameter range: heights, metres.
+// parameter reach: metres, from 0 up.
+// parameter share: 0..1.
+// parameter reached: linear RGB light.
 
 #import airlight::splatting::sheets::{Sheets, sheet_heights}
 

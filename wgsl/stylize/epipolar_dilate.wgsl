@@ -12,6 +12,24 @@
 // note: equation would make blockers of empty texels there.
 // note: Within a line, the depth that a blocker has once carried to the line's end orders blockers like (z - z_l) / dis(s, l)
 // note: does, and does so for an epipole at infinity as well.
+// equation: z' = z + (z − z_l) n / dis(s, l): depth z of a blocker n steps on, l the epipole  (Eq. 3)
+// equation: closing = erosion of the dilation;  minima over the texels 0 .. k − 1 towards the epipole of carried depths
+// error: the direct form is Equation 3, but for less than 1 % of texels that rounding decides;
+// error: test epipolar_dilate/equation::the_direct_form_is_equation_3_everywhere.
+// error: the rectified form within resampling of the direct one;
+// error: test epipolar_dilate/equation::the_rectified_form_is_the_direct_one_within_resampling.
+// parameter far_depth: depth of an empty texel: 1 forward, 0 reversed.
+// parameter stored: depth of the shadow map, 0..1; not finite counts as empty.
+// parameter depth: facing depth, or EMPTY.
+// parameter distance: of the epipole in steps, times the absolute weight.
+// parameter steps: texels along the longer axis.
+// parameter at: position in the map, texels.
+// parameter size: columns and rows of the map.
+// parameter number: of the line.
+// parameter side: 0 greatest x, 1 least x, 2 greatest y, 3 least y.
+// parameter across: texels along the side.
+// parameter along: steps from the beginning of the line.
+// parameter original, result: facing depths.
 
 #import airlight::core::finite::finite_or
 

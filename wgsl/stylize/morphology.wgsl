@@ -7,6 +7,10 @@
 // note: A window is cut at the border of the map. All windows here are intervals of a row that hold their texel, so that
 // note: cutting them is the same as repeating the texel at the border: positions are clamped.
 // note: The disc of radius r is the set of texels with dx^2 + dy^2 <= r^2.
+// equation: half chord at row y of a disc of radius r: w = ⌊√(r² − y²)⌋;  table of level l: extremum over 2^l texels
+// error: exact, every operator equals its reference; test morphology::every_operator_equals_its_reference_everywhere.
+// parameter row: texels from the middle, up to `radius`.
+// parameter level: 0..6.
 
 /// Texels of a row or column over which an extremum is taken. 32 bytes.
 struct Window {

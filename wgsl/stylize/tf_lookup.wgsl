@@ -6,6 +6,20 @@
 // note: how much of the physically based light it replaces.
 // note: The last property, the mean place of what is lit, costs a march where visibility was pre-filtered: callers that have
 // note: no use for it leave it at zero.
+// equation: properties: V̄;  s / limit;  θ / π;  fract(atan2(y, x) / 2π);  s̄ / limit, cut to 0..1
+// equation: L' = L (1 − strength α) + strength brightness c tint;  tint: 4π p, E p or L by mode
+// error: properties: visibility within 1e-6, depth 1e-4, angles 5e-4 and 1e-4;
+// error: test transfer/restyling::rays_lie_where_their_properties_say.
+// error: restyled light within 2e-3; test transfer/restyling::every_mode_makes_of_a_colour_what_it_should.
+// parameter property: MEAN_VISIBILITY to VISIBLE_DEPTH.
+// parameter ndc: normalised device coordinates, -1..1.
+// parameter depth_limit: metres, above 0.
+// parameter position: 0..1 in x and y.
+// parameter map: premultiplied linear RGBA.
+// parameter map_sampler: linear, clamped to the edge.
+// parameter cosine: -1..1.
+// parameter phase: 1/sr.
+// parameter radiance, light_radiance: linear RGB, from 0 up.
 
 #import airlight::core::arc_cosine::arc_cosine
 #import airlight::core::camera::Camera

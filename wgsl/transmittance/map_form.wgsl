@@ -4,6 +4,14 @@
 // source: the algorithm modules of the forms.
 // note: All forms but the transmittance function map add up: the layers of a texel are sums over the stretches that its light
 // note: ray meets, in any order, of optical depth times what is given here.
+// equation: layer_g += τ φ_g(middle, half), φ_g the group g of the chosen form for a stretch of optical depth 1
+// equation: walk: φ_g = spread_g(step / 2) · basis_g(middle), middles led on by rotation
+// error: maps from particles and volumes within the budgets of their forms;
+// error: test transmittance_particles::balls_are_the_series_of_their_chords.
+// parameter middle: depth of the middle of a stretch, 0..1 over the range or the interval.
+// parameter half: half its length, the same.
+// parameter step: its length, the same.
+// parameter weight: optical depth, from 0 up.
 // definition COEFFICIENTS: numbers a texel, four a layer: 4, 8 or 16, of the moments 8; 4 where it is not given.
 // definition PERIODIC: the series of the full period instead of cosines.
 // definition POWER: six power moments.

@@ -3,6 +3,15 @@
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
 // note: A mean with what is not finite, as an overflown half float, is 0.
+// equation: value = Σ corners (share x)(share y) texel; with FILTERED one read by the texture unit
+// error: without FILTERED to rounding, with it within 1e-3; test transmittance_forms::half_floats_are_filtered_as_single_ones_are_mixed.
+// parameter size: columns and rows of the map, from 1 up.
+// parameter texel: column and row, inside the map.
+// parameter value: any, NaN and infinities too.
+// parameter map: layers of four numbers.
+// parameter layer: of the map, from 0.
+// parameter place: position in the map in texels, texel i at i + 0.5.
+// parameter corner: 0..3.
 // definition FILTERED: means are read through a sampler: for maps of rgba16float, not BOUNDED.
 // binding map_sampler: linear, clamped to the edge; with FILTERED only.
 

@@ -6,6 +6,14 @@
 // note: its middle, so that the step's share T_eye (1 - exp(-tau)) T_light is exact in T_eye.
 // note: Pictures of media are premultiplied: linear RGB radiance that reaches the eye, and in alpha the transmittance to the
 // note: background, 1 where there is no medium. Over a picture they are radiance + alpha * background.
+// equation: L = albedo p(cos) L_e Σ_i T_eye,i (1 − exp(−τ_i)) T_light,i;  T_eye,i+1 = T_eye,i exp(−τ_i)
+// error: radiance within 1.5 % rms of the f64 march, transmittance 1 %;
+// error: test transmittance_pictures::surfaces_cut_the_medium_before_any_camera.
+// error: against the same march without a map 1 %, 0.2 %; test transmittance_pictures::a_cloud_through_maps_is_the_march_in_f64.
+// parameter value: of the volume's texture, any; not finite or negative is no medium.
+// parameter cosine: -1..1.
+// parameter light_radiance: linear RGB, from 0 up.
+// parameter source: linear RGB, from 0 up.
 
 #import airlight::core::finite::finite_or
 #import airlight::core::phase::henyey_greenstein

@@ -9,6 +9,13 @@
 // note: still lowers the error of extinction.
 // note: The series is periodic: what leaves at the far side comes in at the near one. Where extinction differs at both ends
 // note: it rings there, which extinction_map, an even series, does not.
+// equation: functions 1, √2 cos(2πk x), √2 sin(2πk x);  τ(x) = Σ_j c_j ∫₀ˣ;  T(x) = exp(−max(τ(x), 0))
+// error: within the budgets of its form against the reference;
+// error: test transmittance_forms::every_form_is_its_reference_and_reaches_what_it_can.
+// parameter group: number of four coefficients, from 0.
+// parameter half: half the length of a stretch, 0..0.5 over the range.
+// parameter map: layers of four coefficients.
+// parameter depth: 0..1 over the range.
 
 #import airlight::core::cosine_basis::{Harmonics, harmonics_next, sine_over_angle, ROOT_OF_TWO}
 #import airlight::core::fourier_basis::{rotate, sine_cosine, PI}

@@ -4,6 +4,11 @@
 // source: the balls of transmittance/particles, seen along view rays instead of light rays.
 // note: A view ray at the distance r from the middle passes sqrt(R^2 - r^2) to both sides of it, cut at the eye and at the
 // note: surface. A ball with a radius of less than LEAST_RADIUS pixels is widened to it and thinned, as in the map.
+// equation: τ(t) = τ_ball √(1 − r² / R²) × share of the chord between the eye and t
+// error: transmittance at the middles 0.6 % in the mean, blended radiance 3 % rms;
+// error: test transmittance_particle_pictures::particles_are_blended_as_in_f64_in_any_order.
+// parameter point: metres in the world.
+// parameter distance: metres along the ray, from 0 up.
 
 #import airlight::core::camera::{Camera, Ray, towards_viewer, matrix_row, ORTHOGRAPHIC}
 #import airlight::transmittance::particles::{Particle, LEAST_RADIUS, GREATEST_DEPTH}

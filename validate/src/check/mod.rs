@@ -15,7 +15,7 @@ pub use limits::{Excess, Usage, excesses, implicit_padding, usage, violations};
 pub use report::{Finding, Format, Report, Severity};
 pub use tools::Tool;
 
-use crate::{Definitions, Error, Library, Location};
+use crate::{Definitions, Error, Library, Location, ModuleSource};
 use std::{
     any::Any,
     collections::BTreeSet,
@@ -105,27 +105,7 @@ fn run_all(subjects: &[Subject], context: &Context) -> Vec<Finding> {
 /// Modules with each set of definitions that a permutation gives them, then the permutations.
 fn subjects(library: &Library) -> Vec<Subject> {
     let mut subjects = Vec::new();
-    // Every permutation, and the modules that it reaches.
-    let mut importers = Vec::new();
-    for pass in library.passes() {
-        for permutation in library.permutations.get(&pass.name).into_iter().flatten() {
-            let definitions = &permutation.definitions;
-            importers.push((definitions, library.reached(&pass.source, definitions)));
-        }
-    }
-    for module in library.modules() {
-        let mut reads = BTreeSet::new();
-        for other in library.closure(std::slice::from_ref(&module.path)) {
-            reads.extend(lint::used_definitions(&other.source).into_keys());
-        }
-        let mut sets: BTreeSet<Definitions> = importers
-            .iter()
-            .filter(|(_, reached)| reached.contains(&module.path))
-            .map(|(definitions, _)| definitions.iter().filter(|(name, _)| reads.contains(*name)).collect())
-            .collect();
-        if sets.is_empty() {
-            sets.insert(Definitions::new());
-        }
+    for (module, sets) in definitions_of_modules(library) {
         for definitions in sets {
             subjects.push(Subject::Module { path: module.path.clone(), definitions });
         }
@@ -140,6 +120,45 @@ fn subjects(library: &Library) -> Vec<Subject> {
         }
     }
     subjects
+}
+
+/// Every permutation with the modules that it reaches.
+fn importers(library: &Library) -> Vec<(&Definitions, BTreeSet<String>)> {
+    let mut importers = Vec::new();
+    for pass in library.passes() {
+        for permutation in library.permutations.get(&pass.name).into_iter().flatten() {
+            let definitions = &permutation.definitions;
+            importers.push((definitions, library.reached(&pass.source, definitions)));
+        }
+    }
+    importers
+}
+
+/// The sets of definitions that permutations give a module; the empty one where none imports it.
+fn sets(
+    library: &Library,
+    importers: &[(&Definitions, BTreeSet<String>)],
+    module: &ModuleSource,
+) -> BTreeSet<Definitions> {
+    let mut reads = BTreeSet::new();
+    for other in library.closure(std::slice::from_ref(&module.path)) {
+        reads.extend(lint::used_definitions(&other.source).into_keys());
+    }
+    let mut sets: BTreeSet<Definitions> = importers
+        .iter()
+        .filter(|(_, reached)| reached.contains(&module.path))
+        .map(|(definitions, _)| definitions.iter().filter(|(name, _)| reads.contains(*name)).collect())
+        .collect();
+    if sets.is_empty() {
+        sets.insert(Definitions::new());
+    }
+    sets
+}
+
+/// Every module with the sets of definitions that permutations give it.
+pub(crate) fn definitions_of_modules(library: &Library) -> Vec<(&ModuleSource, BTreeSet<Definitions>)> {
+    let importers = importers(library);
+    library.modules().iter().map(|module| (module, sets(library, &importers, module))).collect()
 }
 
 /// What a panic said.

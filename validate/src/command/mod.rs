@@ -3,8 +3,10 @@
 
 pub(crate) mod abi;
 pub(crate) mod check;
+pub(crate) mod docs;
 pub(crate) mod flat;
 pub(crate) mod flatten;
+pub(crate) mod list;
 pub(crate) mod manifest;
 pub(crate) mod vendor;
 pub(crate) mod verify;

@@ -194,7 +194,7 @@ fn the_shipped_lists_agree_with_the_sources() {
         for import in &module.imports {
             assert!(
                 shipped.imports.contains(&import.as_str()),
-                "{}: wgsl/src/lib.rs does not list the import {import}",
+                "{}: wgsl/src/list.rs does not list the import {import}",
                 module.file
             );
         }
