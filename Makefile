@@ -45,6 +45,10 @@ check: build ## Every shader permutation through both compilers and all back end
 	fi; \
 	set -x; $(VALIDATE) check wgsl $${require:+--require "$$require"}
 
+.PHONY: validation-layer
+validation-layer: driver rust ## Tests on the GPU under the Vulkan validation layer, which must say nothing
+	./scripts/validation_layer.sh
+
 .PHONY: bench
 bench: driver build ## Ratios against baselines, interleaved in one run
 	$(AIRLIGHT) bench

@@ -5,6 +5,11 @@
 // note: The thesis leaves the fall-off f open. Here f(d) = (1 - (d/r)^2)^2 up to the radius r, then 0: visibility is 1 - f of an occluder
 // note: at the distance d, so it rises to 1 smoothly.
 
+/// Most directions a pixel.
+const MOST_SAMPLES: u32 = 256u;
+/// Most steps along each.
+const MOST_STEPS: u32 = 256u;
+
 /// How occlusion is looked for. 32 bytes.
 struct OcclusionSettings {
     /// Occluders count up to this distance, metres, above 0.
@@ -13,9 +18,9 @@ struct OcclusionSettings {
     thickness: f32,
     /// Sine of the elevation over the tangent plane from which on something occludes: 0..1.
     bias: f32,
-    /// Directions a pixel, from 1 up; slices of the hemisphere with HORIZON and BITMASK.
+    /// Directions a pixel, 1..MOST_SAMPLES; slices of the hemisphere with HORIZON and BITMASK.
     samples: u32,
-    /// Steps along each, from 1 up.
+    /// Steps along each, 1..MOST_STEPS.
     steps: u32,
     /// Side of the square of pixels that have different directions, from 1 up.
     side: u32,
