@@ -49,7 +49,8 @@ pub fn shaders() -> &'static Shaders {
 pub fn hold(system: &str) {
     let only = std::env::var("AIRLIGHT_WILD").unwrap_or_default();
     let only: Vec<&str> = only.split(':').collect();
-    let matches = |index: usize, name: &str| only.get(index).is_none_or(|wanted| wanted.is_empty() || *wanted == name);
+    let matches =
+        |index: usize, name: &str| only.get(index).is_none_or(|wanted| wanted.is_empty() || *wanted == name);
     let mut tally = Tally::default();
     for pass in shaders().library().passes() {
         if pass.name.split('/').next() != Some(system) || !pass.name.contains(only[0]) {
@@ -58,7 +59,12 @@ pub fn hold(system: &str) {
         for permutation in shaders().library().permutations(&pass.name).unwrap() {
             if matches(1, &permutation.name) {
                 let composed = shaders().compose_with(&pass.name, &permutation.definitions).unwrap();
-                hold_permutation(&composed, &permutation.name, |case| matches(2, &case.to_string()), &mut tally);
+                hold_permutation(
+                    &composed,
+                    &permutation.name,
+                    |case| matches(2, &case.to_string()),
+                    &mut tally,
+                );
             }
         }
     }
@@ -72,7 +78,12 @@ pub fn hold(system: &str) {
     assert!(shown.is_empty(), "{} failures:\n{}", tally.failures.len(), shown.join("\n"));
 }
 
-fn hold_permutation(composed: &Composed, permutation: &str, wanted: impl Fn(usize) -> bool, tally: &mut Tally) {
+fn hold_permutation(
+    composed: &Composed,
+    permutation: &str,
+    wanted: impl Fn(usize) -> bool,
+    tally: &mut Tally,
+) {
     let label = format!("{}:{permutation}", composed.pass);
     let forms = [composed, &parsed_flat(composed)].map(Pipelines::new);
     let [own, flat] = match forms {
@@ -82,12 +93,14 @@ fn hold_permutation(composed: &Composed, permutation: &str, wanted: impl Fn(usiz
     tally.permutations += 1;
     let reflection = composed.reflect();
     let cases = if permutation == "default" { DEFAULT_CASES.len() } else { OTHER_CASES };
-    for (number, content) in DEFAULT_CASES.into_iter().enumerate().take(cases).filter(|(number, _)| wanted(*number)) {
+    for (number, content) in
+        DEFAULT_CASES.into_iter().enumerate().take(cases).filter(|(number, _)| wanted(*number))
+    {
         let case = format!("{label}:{number} ({content:?})");
         let seed = seed(&case);
         let mut ran = Vec::new();
         for pipelines in [&own, &flat] {
-            let resources = Resources::new(&reflection, content, seed);
+            let resources = Resources::new(&composed.pass, &reflection, content, seed);
             match pipelines.run(&resources, content, seed, &case) {
                 Ok(run) => ran.push((run, resources)),
                 Err(error) => tally.failures.push(format!("{case}: {error}\n  {}", resources.described())),
@@ -122,7 +135,8 @@ fn parsed_flat(composed: &Composed) -> Composed {
     let text = flat::write(composed).unwrap();
     let module = naga::front::wgsl::parse_str(&text).unwrap();
     let capabilities = airlight::validate::core_capabilities();
-    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities).validate(&module);
+    let info =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities).validate(&module);
     Composed {
         pass: format!("{} (flat)", composed.pass),
         file: composed.file.clone(),
@@ -134,9 +148,8 @@ fn parsed_flat(composed: &Composed) -> Composed {
 
 /// FNV-1a.
 fn seed(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn kind(written: &Written, index: usize) -> Word {

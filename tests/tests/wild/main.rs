@@ -11,6 +11,7 @@
 mod gpu;
 
 mod cases;
+mod inside;
 mod loops;
 mod passes;
 mod resources;

@@ -66,7 +66,8 @@ impl Pipelines {
             let bound = pass.bind_known(gpu(), &named).map_err(|error| error.to_string())?;
             for entry in entries {
                 let groups = [[1, 1, 1], [2, 1, 1], [3, 2, 1], [2, 2, 2]][random.below(4)];
-                pass.dispatch_groups(&mut encoder, &bound, entry, groups).map_err(|error| error.to_string())?;
+                pass.dispatch_groups(&mut encoder, &bound, entry, groups)
+                    .map_err(|error| error.to_string())?;
             }
         }
         let mut targets = Vec::new();
@@ -117,7 +118,10 @@ fn pairs(reflection: &Reflection) -> Vec<(&EntryPoint, Option<&EntryPoint>)> {
     for fragment in of(Stage::Fragment) {
         let mut fitting: Vec<_> = of(Stage::Vertex).filter(|vertex| fits(vertex, fragment)).collect();
         fitting.sort_by_key(|vertex| suffix(vertex) != suffix(fragment));
-        pairs.push((*fitting.first().expect("a vertex entry point for each fragment entry point"), Some(fragment)));
+        pairs.push((
+            *fitting.first().expect("a vertex entry point for each fragment entry point"),
+            Some(fragment),
+        ));
     }
     for vertex in of(Stage::Vertex) {
         if !pairs.iter().any(|(paired, _)| paired.name == vertex.name) {
@@ -127,7 +131,11 @@ fn pairs(reflection: &Reflection) -> Vec<(&EntryPoint, Option<&EntryPoint>)> {
     pairs
 }
 
-fn draw(composed: &Composed, vertex: &EntryPoint, fragment: Option<&EntryPoint>) -> Result<Draw, airlight::PassError> {
+fn draw(
+    composed: &Composed,
+    vertex: &EntryPoint,
+    fragment: Option<&EntryPoint>,
+) -> Result<Draw, airlight::PassError> {
     let floats: Vec<usize> = vertex.inputs.iter().map(|input| floats_of(&input.ty)).collect();
     let mut offset = 0;
     let attributes: Vec<_> = vertex
@@ -135,7 +143,8 @@ fn draw(composed: &Composed, vertex: &EntryPoint, fragment: Option<&EntryPoint>)
         .iter()
         .zip(&floats)
         .map(|(input, floats)| {
-            let format = [VertexFormat::Float32, VertexFormat::Float32x2, VertexFormat::Float32x3][floats - 1];
+            let format =
+                [VertexFormat::Float32, VertexFormat::Float32x2, VertexFormat::Float32x3][floats - 1];
             let attribute = wgpu::VertexAttribute { format, offset, shader_location: input.location };
             offset += 4 * *floats as u64;
             attribute

@@ -2,6 +2,7 @@
 //! Resources for every binding of a pass, by its reflected kind.
 
 use crate::gpu::{Random, gpu};
+use crate::inside::is_made_inside;
 use crate::structs::{Word, contents};
 use crate::values::{Content, Spread, extreme_word, texel_float, texel_half};
 use airlight::validate::{Binding, BindingKind, Reflection, Sample, TextureDimension};
@@ -36,7 +37,7 @@ pub struct Written {
 
 impl Resources {
     /// Made anew from a seed: the same every time.
-    pub fn new(reflection: &Reflection, content: Content, seed: u64) -> Self {
+    pub fn new(pass: &str, reflection: &Reflection, content: Content, seed: u64) -> Self {
         let random = &mut Random(seed | 1);
         // Most resources of a case have one size.
         let size = SIZES[random.below(SIZES.len())];
@@ -57,15 +58,17 @@ impl Resources {
                     0 => Sampler::linear(gpu()),
                     _ => Sampler::rows(gpu()),
                 }),
-                BindingKind::Texture { sample: Sample::Depth, dimension, .. } => {
-                    Held::Texture(depth_texture(extent(*dimension, size, volume, random), *dimension, 1, random))
-                }
+                BindingKind::Texture { sample: Sample::Depth, dimension, .. } => Held::Texture(
+                    depth_texture(extent(*dimension, size, volume, random), *dimension, 1, random),
+                ),
                 BindingKind::Texture { multisampled: true, dimension, .. } => {
                     Held::Texture(depth_texture([size[0], size[1], 1], *dimension, 4, random))
                 }
                 BindingKind::Texture { sample, dimension, filtered, .. } => {
                     let format = sampled_format(*sample, *filtered, &binding.name, random);
                     let extent = extent(*dimension, size, volume, random);
+                    let inside = content == Content::NonFinite && is_made_inside(pass, &binding.name);
+                    let content = if inside { Content::Finite } else { content };
                     Held::Texture(texture(extent, format, *dimension, false, content, random))
                 }
                 BindingKind::StorageTexture { dimension, format, .. } => {
@@ -80,13 +83,16 @@ impl Resources {
     }
 
     /// By name, as passes take them.
-    pub fn named(&self) -> Vec<(&str, Resource<'_>)> {
-        let resource = |held| match held {
-            Held::Buffer(buffer, _) => buffer.into(),
-            Held::Texture(texture) => texture.into(),
-            Held::Sampler(sampler) => sampler.into(),
+    pub fn named<'a>(&'a self) -> Vec<(&'a str, Resource<'a>)> {
+        let resource = |(binding, held): &'a (Binding, Held)| {
+            let resource: Resource<'a> = match held {
+                Held::Buffer(buffer, _) => buffer.into(),
+                Held::Texture(texture) => texture.into(),
+                Held::Sampler(sampler) => sampler.into(),
+            };
+            (binding.name.as_str(), resource)
         };
-        self.held.iter().map(|(binding, held)| (binding.name.as_str(), resource(held))).collect()
+        self.held.iter().map(resource).collect()
     }
 
     /// What a pass may have written.
@@ -112,7 +118,9 @@ impl Resources {
     pub fn described(&self) -> String {
         let one = |(binding, held): &(Binding, Held)| match held {
             Held::Buffer(buffer, _) => format!("{} {} bytes", binding.name, buffer.raw.size()),
-            Held::Texture(texture) => format!("{} {:?} {:?}", binding.name, texture.size(), texture.raw.format()),
+            Held::Texture(texture) => {
+                format!("{} {:?} {:?}", binding.name, texture.size(), texture.raw.format())
+            }
             Held::Sampler(_) => binding.name.clone(),
         };
         self.held.iter().map(one).collect::<Vec<_>>().join(", ")
@@ -210,7 +218,11 @@ fn texture(
     let bytes: Vec<u8> = match size / u32::from(format.components()) {
         1 => (0..numbers).map(|_| random.bits() as u8).collect(),
         2 => (0..numbers).flat_map(|_| texel_half(random, content, spread).to_le_bytes()).collect(),
-        _ if matches!(format, TextureFormat::R32Uint | TextureFormat::Rg32Uint | TextureFormat::Rgba32Uint) => {
+        _ if matches!(
+            format,
+            TextureFormat::R32Uint | TextureFormat::Rg32Uint | TextureFormat::Rgba32Uint
+        ) =>
+        {
             let word = |random: &mut Random| match content {
                 _ if content.is_sane() && !any_bits => random.below(8) as u32,
                 Content::Extreme => extreme_word(random),
@@ -234,7 +246,12 @@ fn texture(
 }
 
 /// A depth texture of one depth a layer: only draws write to it.
-fn depth_texture(extent: [u32; 3], dimension: TextureDimension, samples: u32, random: &mut Random) -> Texture {
+fn depth_texture(
+    extent: [u32; 3],
+    dimension: TextureDimension,
+    samples: u32,
+    random: &mut Random,
+) -> Texture {
     let format = TextureFormat::Depth32Float;
     let texture = create(extent, format, dimension, TextureUsages::RENDER_ATTACHMENT, samples);
     let mut encoder = gpu().encoder();

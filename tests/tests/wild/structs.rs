@@ -156,8 +156,8 @@ fn fill_struct(layout: &StructLayout, element: &mut [u32], random: &mut Random) 
             ("g", _) => set(&[random.between(-0.9, 0.9) as f32]),
             ("rows", "f32") => set(&[random.below(32) as f32 + 1.0]),
             (
-                "light" | "axis_a" | "axis_b" | "ray_light" | "ray_a" | "ray_b" | "direction" | "along" | "across"
-                | "away" | "normal" | "axis",
+                "light" | "axis_a" | "axis_b" | "ray_light" | "ray_a" | "ray_b" | "direction" | "along"
+                | "across" | "away" | "normal" | "axis",
                 "vec3<f32>",
             ) => set(&frame.next().unwrap_or(Vec3::Y).to_array()),
             ("spot_cosines", _) => set(&[0.9, 0.5]),
@@ -168,7 +168,10 @@ fn fill_struct(layout: &StructLayout, element: &mut [u32], random: &mut Random) 
             }
             ("seed" | "frame" | "hash", "u32") => words[0] = random.bits(),
             ("shift", _) => words[0] = 4 * random.below(8) as u32,
-            ("projection" | "local" | "parity" | "begins" | "ends" | "front_to_back" | "turn" | "mode", "u32") => {
+            (
+                "projection" | "local" | "parity" | "begins" | "ends" | "front_to_back" | "turn" | "mode",
+                "u32",
+            ) => {
                 words[0] = random.below(2) as u32;
             }
             ("kind" | "phase" | "blend", "u32") => words[0] = random.below(3) as u32,
@@ -218,7 +221,9 @@ fn invert_partners(layout: &StructLayout, element: &mut [u32]) {
     for (index, member) in layout.members.iter().enumerate() {
         let Some((to, from)) = member.name.split_once("_from_") else { continue };
         let partner = format!("{from}_from_{to}");
-        let Some(later) = layout.members[index..].iter().find(|member| member.name == partner) else { continue };
+        let Some(later) = layout.members[index..].iter().find(|member| member.name == partner) else {
+            continue;
+        };
         for matrix in 0..member.size as usize / 64 {
             let (a, b) = (member.offset as usize / 4 + 16 * matrix, later.offset as usize / 4 + 16 * matrix);
             let columns: [f32; 16] = std::array::from_fn(|k| f32::from_bits(element[a + k]));

@@ -60,20 +60,8 @@ pub fn extreme_float(random: &mut Random) -> f32 {
 
 /// A whole number that no artist would set.
 pub fn extreme_word(random: &mut Random) -> u32 {
-    const ENDS: [u32; 12] = [
-        0,
-        0,
-        1,
-        2,
-        u32::MAX,
-        u32::MAX - 1,
-        i32::MIN as u32,
-        i32::MAX as u32,
-        65_535,
-        65_536,
-        4096,
-        1 << 30,
-    ];
+    const ENDS: [u32; 12] =
+        [0, 0, 1, 2, u32::MAX, u32::MAX - 1, i32::MIN as u32, i32::MAX as u32, 65_535, 65_536, 4096, 1 << 30];
     ENDS[random.below(ENDS.len())]
 }
 
@@ -120,7 +108,9 @@ pub fn texel_float(random: &mut Random, content: Content, spread: Spread) -> f32
 pub fn texel_half(random: &mut Random, content: Content, spread: Spread) -> f16 {
     const NOT_FINITE: [u16; 6] = [0x7e00, 0xfe00, 0x7c00, 0xfc00, 0x0001, 0x8000];
     match content {
-        Content::NonFinite if random.below(4) == 0 => f16::from_bits(NOT_FINITE[random.below(NOT_FINITE.len())]),
+        Content::NonFinite if random.below(4) == 0 => {
+            f16::from_bits(NOT_FINITE[random.below(NOT_FINITE.len())])
+        }
         _ => f16::from_f32(texel_float(random, content, spread)),
     }
 }

@@ -5,7 +5,7 @@
 // note: iso-value changes. Ranges of bricks stay as they are. `core/brick_distances` then spreads what is written.
 // binding volume: the scale of texels.
 // binding surface: iso-value and offset of texels.
-// binding transfer: colour and opacity of values 0..1, one row.
+// binding transfer: finite colour and opacity of values 0..1, one row.
 // binding linear_sampler: linear, clamped to the edge.
 // binding ranges: least and greatest texel of each brick and one voxel around it, of `core/brick_ranges`.
 // binding counts: for each entry of the table, how many before it are solid; one more than entries.

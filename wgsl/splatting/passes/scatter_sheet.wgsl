@@ -23,7 +23,7 @@
 // binding scattering: cones and free path.
 // binding number: which sheet.
 // binding light_sheet: mean values of the sheet along the light rays, rgba16float.
-// binding transfer: colour, which is the albedo, and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour, which is the albedo, and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding left: the light on its way, linear RGB, a vector a texel of the light buffer, row after row.
 // binding rows: what is scattered, convolved along rows: on, and the share that goes through; with BACK, behind these, back.
@@ -163,11 +163,11 @@ fn optics_of(texel: vec2<u32>, mean: f32, shares: vec2<f32>) -> SheetOptics {
 fn convolve_rows(corner: vec2<u32>, local: vec2<u32>, stage: u32) {
     let size = textureDimensions(shadow);
     let kernel = min(4u * number.index, arrayLength(&kernels) - 4u);
-    var radius = u32(kernels[min(kernel, arrayLength(&kernels) - 1u)].weights[3].w);
+    var asked = u32(kernels[min(kernel, arrayLength(&kernels) - 1u)].weights[3].w);
 #ifdef BACK
-    radius = max(radius, u32(kernels[min(kernel + 2u, arrayLength(&kernels) - 1u)].weights[3].w));
+    asked = max(asked, u32(kernels[min(kernel + 2u, arrayLength(&kernels) - 1u)].weights[3].w));
 #endif
-    radius = min(radius, BLUR_WEIGHTS - 1u);
+    let radius = min(asked, BLUR_WEIGHTS - 1u);
     let width = TILE.x + 2u * radius;
     let shares = cone_shares(scattering, lighting.g);
     for (var i = local.y * TILE.x + local.x; i < width * TILE.y; i += TILE.x * TILE.y) {
