@@ -3,8 +3,8 @@
 //! value. Nothing hangs, nothing is refused, the device answers afterwards; with sane parameters every output is finite,
 //! whatever the textures hold; and the flat form of a pass gives the same bits as the composed one.
 //!
-//! Cases are drawn from fixed seeds. `AIRLIGHT_WILD=PASS[:PERMUTATION[:CASE]]` runs only those whose pass contains PASS and
-//! prints more; `--nocapture` prints how many ran and which submission was the slowest.
+//! Cases are drawn from fixed seeds. `AIRLIGHT_WILD=PASS[:PERMUTATION[:CASE]]` runs only those whose pass contains PASS,
+//! `AIRLIGHT_WILD_ROUNDS=N` draws N times as many; `--nocapture` prints how many ran and which submission was the slowest.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../support/gpu.rs"]

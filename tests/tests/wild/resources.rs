@@ -58,12 +58,12 @@ impl Resources {
                     0 => Sampler::linear(gpu()),
                     _ => Sampler::rows(gpu()),
                 }),
-                BindingKind::Texture { sample: Sample::Depth, dimension, .. } => Held::Texture(
-                    depth_texture(extent(*dimension, size, volume, random), *dimension, 1, random),
-                ),
                 BindingKind::Texture { multisampled: true, dimension, .. } => {
                     Held::Texture(depth_texture([size[0], size[1], 1], *dimension, 4, random))
                 }
+                BindingKind::Texture { sample: Sample::Depth, dimension, .. } => Held::Texture(
+                    depth_texture(extent(*dimension, size, volume, random), *dimension, 1, random),
+                ),
                 BindingKind::Texture { sample, dimension, filtered, .. } => {
                     let format = sampled_format(*sample, *filtered, &binding.name, random);
                     let extent = extent(*dimension, size, volume, random);
