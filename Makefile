@@ -58,6 +58,9 @@ portability: driver rust ## Every pass of the snapshots again, from its flat fil
 	    AIRLIGHT_CAPTURE="$(CURDIR)/target/portability/$$test" cargo test --quiet $(CARGO_FLAGS) --test $$test || exit 1; \
 	done
 	node tests/browser/portability/run.js
+.PHONY: validation-layer
+validation-layer: driver rust ## Tests on the GPU under the Vulkan validation layer, which must say nothing
+	./scripts/validation_layer.sh
 
 .PHONY: bench
 bench: driver build ## Ratios against baselines, interleaved in one run

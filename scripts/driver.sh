@@ -3,7 +3,7 @@
 # Finds what Airlight needs of the system, and installs it where that is possible and allowed.
 #
 #   scripts/driver.sh           a Vulkan driver: the GPU's, or Debian's software driver where there is none
-#   scripts/driver.sh --tools   spirv-val as well; a tool that cannot be had is reported, not an error
+#   scripts/driver.sh --tools   spirv-val and the validation layer as well; what cannot be had is reported, not an error
 #   scripts/driver.sh --check   install nothing: say what is there, exit 1 where no driver is
 set -euo pipefail
 
@@ -144,4 +144,7 @@ if [ "$tools" = yes ]; then
             echo "driver: spirv-val is not on the PATH; install spirv-tools"
         fi
     done
+    layer="$(dirname "$0")/validation_layer.sh"
+    "$layer" --check >/dev/null 2>&1 || apt_install vulkan-validationlayers || true
+    "$layer" --check || true
 fi

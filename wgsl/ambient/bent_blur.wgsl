@@ -11,11 +11,14 @@
 // parameter normal, other_normal: unit vectors in the world.
 // parameter difference: mean direction less half the normal, length up to 1.5.
 
+/// Most pixels that are averaged.
+const MOST_TAPS: u32 = 16u;
+
 /// A blur along an axis. 32 bytes.
 struct BentBlur {
     /// (1, 0) or (0, 1).
     axis: vec2<u32>,
-    /// Pixels that are averaged, from 1 up: the side of the sampling pattern.
+    /// Pixels that are averaged, 1..MOST_TAPS: the side of the sampling pattern.
     taps: u32,
     /// Metres from the tangent plane at which a neighbour counts no more, above 0.
     reach: f32,

@@ -16,6 +16,11 @@
 // parameter horizon_sine: sine of the horizon's elevation, 0..1.
 // parameter low, high: angles as parts 0..1 of the half-circle.
 
+/// Most directions a pixel.
+const MOST_SAMPLES: u32 = 256u;
+/// Most steps along each.
+const MOST_STEPS: u32 = 256u;
+
 /// How occlusion is looked for. 32 bytes.
 struct OcclusionSettings {
     /// Occluders count up to this distance, metres, above 0.
@@ -24,9 +29,9 @@ struct OcclusionSettings {
     thickness: f32,
     /// Sine of the elevation over the tangent plane from which on something occludes: 0..1.
     bias: f32,
-    /// Directions a pixel, from 1 up; slices of the hemisphere with HORIZON and BITMASK.
+    /// Directions a pixel, 1..MOST_SAMPLES; slices of the hemisphere with HORIZON and BITMASK.
     samples: u32,
-    /// Steps along each, from 1 up.
+    /// Steps along each, 1..MOST_STEPS.
     steps: u32,
     /// Side of the square of pixels that have different directions, from 1 up.
     side: u32,

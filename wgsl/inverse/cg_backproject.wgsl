@@ -18,7 +18,7 @@
 // parameter pixel: column and row of a pixel's middle less a half: (0, 0) the first.
 // parameter begin, end: corners of a part of the picture, pixels.
 
-#import airlight::inverse::slice_steps::SliceView
+#import airlight::inverse::slice_steps::{SliceView, MOST_SLICES}
 #import airlight::inverse::basis::triangle_weights
 
 /// The part of the volume's box in which a basis function is not 0.
@@ -40,7 +40,7 @@ fn support_of(voxel: vec3<u32>, size: vec3<u32>, reach: f32) -> Support {
 
 /// First slice whose middle plane crosses the support and the one past the last.
 fn slices_of_support(view: SliceView, support: Support) -> vec2<u32> {
-    let count = f32(view.slices);
+    let count = f32(min(view.slices, MOST_SLICES));
     let ends = vec2<f32>(dot(support.low, view.axis), dot(support.high, view.axis)) * count - 0.5;
     // At the ends of a support there is nothing, but at the faces of the box.
     return vec2<u32>(clamp(vec2<f32>(ceil(ends.x + 1e-3), floor(ends.y - 1e-3) + 1.0), vec2<f32>(0.0), vec2<f32>(count)));

@@ -15,11 +15,14 @@ const CHANNELS: u32 = 1u;
 const NUMBERS: u32 = 1u;
 #endif
 
+/// Most lights that are solved for.
+const MOST_LIGHTS: u32 = 1024u;
+
 /// One of several lights. 16 bytes.
 struct LightNumber {
     /// From 0.
     index: u32,
-    /// How many lights there are.
+    /// How many lights there are, 1..MOST_LIGHTS.
     count: u32,
     /// Groups that each light has sums of.
     groups: u32,

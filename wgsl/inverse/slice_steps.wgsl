@@ -17,11 +17,16 @@
 // parameter step: number of the step, first .. end - 1 of the walk.
 // parameter slice: number, 0 .. slices - 1.
 
+/// Most slices of a volume.
+const MOST_SLICES: u32 = 4096u;
+/// Most steps of any bent ray.
+const MOST_RAY_STEPS: u32 = 65536u;
+
 /// A view of the volume: rays are affine in the pixel. 208 bytes.
 struct SliceView {
     /// Where the ray through the corner of the picture begins.
     origin: vec3<f32>,
-    /// How many slices, from 1 up.
+    /// How many slices, 1..MOST_SLICES.
     slices: u32,
     /// Direction of that ray, of any length.
     direction: vec3<f32>,
@@ -75,7 +80,7 @@ struct PictureRows {
 struct RaySteps {
     /// Length of a step of a bent ray, metres, above 0.
     metres: f32,
-    /// Most steps of a bent ray.
+    /// Most steps of a bent ray, 0..MOST_RAY_STEPS.
     most: u32,
     reserved_a: u32,
     reserved_b: u32,
@@ -142,7 +147,7 @@ struct SliceWalk {
 /// First slice of a ray's span and the one past the last, from the low side of the axis.
 fn slices_of(view: SliceView, ray: SliceRay, span: vec2<f32>) -> vec2<u32> {
     let ends = dot(ray.origin, view.axis) + dot(ray.direction, view.axis) * span;
-    let count = f32(view.slices);
+    let count = f32(min(view.slices, MOST_SLICES));
     // One more to each side: an end that rounding has put into the neighbour.
     let low = clamp(floor(min(ends.x, ends.y) * count - 0.01), 0.0, count);
     let high = clamp(ceil(max(ends.x, ends.y) * count + 0.01), low, count);

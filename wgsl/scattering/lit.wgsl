@@ -31,7 +31,7 @@
 #import airlight::scattering::local_light::{
     local_ray, equal_angle, along_from_equal_angle, path_through_air, cosine_to_light
 }
-#import airlight::scattering::march::march_shadow_map
+#import airlight::scattering::march::{march_shadow_map, MOST_MARCH_STEPS}
 #import airlight::scattering::shadow_lookup::{shadow_in_map, shadow_in_view, lit_by_shadow}
 
 #ifdef SHADOW_ARRAY
@@ -75,10 +75,11 @@ fn marched_visibility(
 fn marched_light(
     light: Light, origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
 ) -> vec3<f32> {
-    let stride = (span.y - span.x) / f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let stride = (span.y - span.x) / f32(max(taken, 1u));
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         let along = stride * (f32(done) + offset);
         let weight = exp(-min(extinction * stride * f32(done), 80.0));
         sum += weight * lit_at(light, origin + (span.x + along) * direction);
@@ -95,13 +96,14 @@ fn marched_local_light(
     extinction: f32, steps: u32, offset: f32
 ) -> vec3<f32> {
     let ray = local_ray(away, cosine, sine, light.radius);
+    let taken = min(steps, MOST_MARCH_STEPS);
     let from_angle = equal_angle(ray, span.x);
-    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(steps, 1u));
+    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(taken, 1u));
     // Weights in units of the first step's: finite however deep the stretch lies.
     let first = path_through_air(ray, along_from_equal_angle(ray, from_angle + stride * offset));
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         let along = along_from_equal_angle(ray, from_angle + stride * (f32(done) + offset));
         let phase = henyey_greenstein(cosine_to_light(ray, along), g);
         let air = exp(-clamp(extinction * (path_through_air(ray, along) - first), 0.0, 80.0));

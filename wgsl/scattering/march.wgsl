@@ -17,6 +17,9 @@
 #import airlight::core::light::{Light, shadow_position}
 #import airlight::core::prefix_sum::{one_minus_exp, prefix_weight}
 
+/// Most steps of a march by equal steps.
+const MOST_MARCH_STEPS: u32 = 65536u;
+
 /// Mean visibility over the first `texels` texels of a row of a rectified map, weighted by
 /// transmittance. `depth`: of the ray, 0..1; `texels`: fractional, clamped to the width of the map;
 /// `optical_step`: optical depth of the ray over one texel, zero for the plain mean.
@@ -46,12 +49,13 @@ fn march_row(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, optical_st
 /// each step the sample lies.
 fn march_row_steps(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, steps: u32, offset: f32) -> f32 {
     let width = f32(textureDimensions(map).x);
-    let count = f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let count = f32(max(taken, 1u));
     let stride = clamp(texels, 1e-3, width) / count;
     // The sum of strides is rounded at each step: the last sample stays inside the map.
     var at = clamp(offset * stride, 0.0, max(width - 0.05 - stride * (count - 1.0), 0.0));
     var lit = 0u;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         lit += select(0u, 1u, textureLoad(map, vec2<u32>(u32(at), row), 0).x >= depth);
         at += stride;
     }
@@ -70,13 +74,14 @@ fn march_shadow_map(
     // A directional light's matrix is affine: the ray is a straight line in texels and depth.
     let first = shadow_position(light, size, origin);
     let last = shadow_position(light, size, origin + direction * distance);
-    let stride = (last - first) / f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let stride = (last - first) / f32(max(taken, 1u));
     // Depth must grow away from the light for the comparison.
     let facing = select(-1.0, 1.0, light.far_depth > 0.5);
-    let ratio = exp(-extinction * distance / f32(max(steps, 1u)));
+    let ratio = exp(-extinction * distance / f32(max(taken, 1u)));
     var sum = 0.0;
     var total = 0.0;
-    for (var left = steps; left > 0u; left--) {
+    for (var left = taken; left > 0u; left--) {
         let at = first + stride * (f32(left) - 1.0 + offset);
         let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
         let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));

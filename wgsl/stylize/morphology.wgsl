@@ -40,7 +40,7 @@ struct Disc {
     level: u32,
     /// The least distance of rows from the middle that this table serves, texels.
     first_row: u32,
-    /// The distance at which it ends, texels.
+    /// The distance at which it ends, texels, at most the height of the map.
     end_row: u32,
     /// 1 for minima, -1 for maxima.
     sign: f32,

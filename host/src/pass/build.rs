@@ -128,7 +128,11 @@ impl Pass {
         Self::render_to(gpu, composed, stages, &vec![target; count])
     }
 
-    fn render_to(
+    /// Like [`Pass::render`] into targets of any formats and blending, one a location; the format in `stages` is not read.
+    ///
+    /// # Errors
+    /// As [`Pass::render`].
+    pub fn render_to(
         gpu: &Gpu,
         composed: &Composed,
         stages: &RenderStages<'_>,

@@ -14,7 +14,7 @@
 // binding blurred: out, like `bent`.
 
 #import airlight::core::camera::Camera
-#import airlight::ambient::bent_blur::{BentBlur, edge_weight, mean_from_difference}
+#import airlight::ambient::bent_blur::{BentBlur, MOST_TAPS, edge_weight, mean_from_difference}
 #import airlight::ambient::seen_surface::{seen_surface, seen_normal}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -41,8 +41,9 @@ fn blur_bent(@builtin(global_invocation_id) id: vec3<u32>) {
     let normal = seen_normal(textureLoad(normals, min(own, last_normal), 0).xyz, vec3<f32>(0.0));
     var sum = vec4<f32>(0.0);
     var weights = 0.0;
-    for (var tap = 0u; tap < blur.taps; tap++) {
-        let at = own + vec2<i32>(blur.axis) * (i32(tap) - i32(blur.taps / 2u));
+    let taps = min(blur.taps, MOST_TAPS);
+    for (var tap = 0u; tap < taps; tap++) {
+        let at = own + vec2<i32>(blur.axis) * (i32(tap) - i32(taps / 2u));
         let inside = all(at >= vec2<i32>(0)) && all(at < size);
         let other = clamp(at, vec2<i32>(0), size - 1);
         let there = seen_surface(camera, other, textureLoad(depth, other, 0).x);

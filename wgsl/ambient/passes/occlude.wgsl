@@ -21,7 +21,7 @@
 #import airlight::core::camera::{Camera, towards_viewer}
 #import airlight::core::tangent_frame::tangent_frame
 #import airlight::ambient::bent_cone::{BentSum, bent_nothing, openness}
-#import airlight::ambient::occluders::{OcclusionSettings, occluder_weight, elevation_sine}
+#import airlight::ambient::occluders::{OcclusionSettings, MOST_SAMPLES, occluder_weight, elevation_sine}
 #import airlight::ambient::sample_pattern::{SampleShift, sample_shift}
 #import airlight::ambient::seen_surface::{SeenSurface, seen_surface, seen_place, seen_normal}
 #ifndef OCCLUSION_ONLY
@@ -29,14 +29,17 @@
 #endif
 #ifdef HORIZON
 #import airlight::ambient::bent_cone::bent_add_all
-#import airlight::ambient::occluders::open_slice
+#import airlight::ambient::occluders::{open_slice, MOST_STEPS}
 #else
 #ifdef BITMASK
 #import airlight::ambient::bent_cone::bent_add_all
-#import airlight::ambient::occluders::{sector_bits, SECTORS}
+#import airlight::ambient::occluders::{sector_bits, SECTORS, MOST_STEPS}
 #else
 #import airlight::ambient::bent_cone::bent_add
 #import airlight::ambient::sample_pattern::{sample_place, hemisphere_direction}
+#ifndef DISC
+#import airlight::ambient::occluders::MOST_STEPS
+#endif
 #endif
 #endif
 
@@ -75,7 +78,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
     let turn = 6.2831855 * (f32(index) + shift.directions.x) / f32(max(settings.samples, 1u));
     let tangent = tangent_frame(normal) * vec3<f32>(cos(turn), sin(turn), 0.0);
     var horizon = 0.0;
-    for (var step = 0u; step < settings.steps; step++) {
+    for (var step = 0u; step < min(settings.steps, MOST_STEPS); step++) {
         let part = (f32(step) + shift.steps) / f32(settings.steps);
         let at = seen_place(camera, place + tangent * (settings.radius * part * part));
         let seen = seen_at(vec2<i32>(floor(at.pixel)));
@@ -97,7 +100,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
     // A normal at right angles to the slice leaves its middle open to choice.
     let middle = select(atan2(upright.y, upright.x), 0.0, dot(upright, upright) < 1e-12);
     var blocked = 0u;
-    for (var step = 0u; step < 2u * settings.steps; step++) {
+    for (var step = 0u; step < 2u * min(settings.steps, MOST_STEPS); step++) {
         let side = select(-1.0, 1.0, (step & 1u) == 0u);
         let part = (f32(step >> 1u) + shift.steps) / f32(settings.steps);
         // Beside the tangent plane's projection, so that steps are even on the screen.
@@ -131,7 +134,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
     let direction = tangent_frame(normal) * hemisphere_direction(sample_place(index, settings.samples, shift));
     var visibility = 1.0;
     var outlier = false;
-    for (var step = 0u; step < settings.steps; step++) {
+    for (var step = 0u; step < min(settings.steps, MOST_STEPS); step++) {
         let part = (f32(step) + shift.steps) / f32(settings.steps);
         let reached = place + direction * (settings.radius * part * part);
         let at = seen_place(camera, reached);
@@ -162,7 +165,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let normal = seen_normal(texel, viewer);
     let shift = sample_shift(id.xy, settings.side, settings.frame);
     var sum = bent_nothing();
-    let samples = select(0u, settings.samples, seen.known);
+    let samples = select(0u, min(settings.samples, MOST_SAMPLES), seen.known);
     for (var index = 0u; index < samples; index++) {
         sum = add_sample(sum, index, seen.place, normal, viewer, shift);
     }

@@ -34,10 +34,12 @@
 @group(#{GROUP}) @binding(6) var<storage, read> solved: array<f32>;
 @group(#{GROUP}) @binding(7) var<storage, read_write> collected: array<f32>;
 
-/// Pixels in the rows that are projected back.
+/// Pixels in the rows that are projected back, and in the picture.
 fn in_rows(pixels: vec4<i32>) -> vec4<i32> {
     let first = i32(rows.first);
-    return vec4<i32>(pixels.x, max(pixels.y, first), pixels.z, min(pixels.w, first + i32(rows.count) - 1));
+    let last = vec2<i32>(textureDimensions(spans)) - 1;
+    let end = min(first + i32(rows.count) - 1, last.y);
+    return vec4<i32>(pixels.x, max(pixels.y, first), min(pixels.z, last.x), min(pixels.w, end));
 }
 
 /// Where `weighed` has a pixel's step in a slice.

@@ -10,7 +10,7 @@
 // binding residual: the picture that is multiplied, of the same size; for light_residual.
 // binding products: in and out, numbers a light, to which is added.
 
-#import airlight::inverse::light_numbers::{LightNumber, CHANNELS, NUMBERS}
+#import airlight::inverse::light_numbers::{LightNumber, CHANNELS, NUMBERS, MOST_LIGHTS}
 #import airlight::inverse::group_sum::{GROUP_THREADS, group_sum}
 
 @group(#{GROUP}) @binding(0) var<uniform> number: LightNumber;
@@ -37,7 +37,7 @@ fn light_picture(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let pixel = id.y * size.x + id.x;
     var sum = vec4<f32>(0.0);
-    for (var light = 0u; light < number.count; light++) {
+    for (var light = 0u; light < min(number.count, MOST_LIGHTS); light++) {
         for (var channel = 0u; channel < CHANNELS; channel++) {
             let coefficient = coefficients[min(NUMBERS * light + channel, arrayLength(&coefficients) - 1u)];
             sum[channel] += coefficient * column_at(light, pixel, size.x * size.y, channel);

@@ -2,7 +2,8 @@
 // summary: What is wrong with a picture, or the picture itself, weighed, and sums of squares over it.
 // source: thesis 7.4.1: c = W a - o, and per-pixel weights of 7.4.2.
 // note: Dispatch over the picture: weigh_difference before the picture is projected back, weigh_picture of the picture of a direction. Sums of
-// note: groups are added up by inverse/solver_scalars, always in the same order.
+// note: groups are added up by inverse/solver_scalars, always in the same order. A channel of `wanted` or a weight that is not finite counts for
+// note: nothing.
 // definition RGB: three channels; else one.
 // binding rows: `first` is where the sums of this picture begin, groups.
 // binding rendered: the picture, r32float or rgba32float.
@@ -11,6 +12,7 @@
 // binding difference: out, what was weighed, like `rendered`.
 // binding sums: out, of each group, weighed sum of squares of the difference, or of the picture, by channel.
 
+#import airlight::core::finite::{finite_or, finite_or_rgb}
 #import airlight::inverse::slice_steps::PictureRows
 #import airlight::inverse::group_sum::{group_sum, group_index}
 
@@ -43,8 +45,9 @@ fn weigh_difference(
     let size = textureDimensions(rendered);
     let inside = all(id.xy < size);
     let pixel = min(id.xy, size - 1u);
-    let weight = textureLoad(weights, pixel, 0).x;
-    let off = (textureLoad(rendered, pixel, 0) - textureLoad(wanted, pixel, 0)) * vec4<f32>(1.0, 1.0, 1.0, 0.0);
+    let weight = finite_or(textureLoad(weights, pixel, 0).x, 0.0);
+    let apart = textureLoad(rendered, pixel, 0).rgb - textureLoad(wanted, pixel, 0).rgb;
+    let off = vec4<f32>(finite_or_rgb(apart, 0.0), 0.0);
     if inside {
         textureStore(difference, pixel, weight * off);
     }
@@ -61,7 +64,7 @@ fn weigh_picture(
     let size = textureDimensions(rendered);
     let pixel = min(id.xy, size - 1u);
     let value = textureLoad(rendered, pixel, 0) * vec4<f32>(1.0, 1.0, 1.0, 0.0);
-    let weight = textureLoad(weights, pixel, 0).x;
+    let weight = finite_or(textureLoad(weights, pixel, 0).x, 0.0);
     let inside = all(id.xy < size);
     if inside {
         textureStore(difference, pixel, weight * value);

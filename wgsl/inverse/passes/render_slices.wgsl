@@ -23,7 +23,7 @@
 
 #import airlight::inverse::slice_steps::{SliceView, slice_ray}
 #ifdef BENT
-#import airlight::inverse::slice_steps::RaySteps
+#import airlight::inverse::slice_steps::{RaySteps, MOST_RAY_STEPS}
 #import airlight::inverse::bent_rays::{bent_ray, next_part, box_slopes}
 #else
 #import airlight::inverse::slice_steps::{slice_walk, slice_of_step, slice_part}
@@ -81,7 +81,7 @@ fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
     let slopes = box_slopes(view);
     var bent = bent_ray(refraction, view, ray, span);
     let first = 0u;
-    let end = steps.most;
+    let end = min(steps.most, MOST_RAY_STEPS);
 #else
     let walk = slice_walk(view, ray, span);
     let first = walk.first;

@@ -24,7 +24,7 @@
 #import airlight::core::finite::finite_or
 #import airlight::inverse::slice_steps::{SliceView, VoxelGrid, slice_ray}
 #ifdef BENT
-#import airlight::inverse::slice_steps::RaySteps
+#import airlight::inverse::slice_steps::{RaySteps, MOST_RAY_STEPS}
 #import airlight::inverse::bent_rays::{bent_ray, next_part, box_slopes}
 #else
 #import airlight::inverse::slice_steps::{slice_walk, slice_of_step, slice_part}
@@ -73,11 +73,11 @@ fn add(number: u32, value: f32, exponent: i32, pixels: i32) {
 #else
 /// Adds to a number. Each time the lower word runs over, who sees it carries.
 fn add(number: u32, value: f32, exponent: i32, pixels: i32) {
-    let place = min(2u * number, arrayLength(&words) - 2u);
+    let place = min(2u * number, max(arrayLength(&words), 2u) - 2u);
     let added = fixed_words(value, exponent, pixels);
     let old = atomicAdd(&words[place], added.x);
     let carried = select(0u, 1u, old > 0xffffffffu - added.x);
-    atomicAdd(&words[place + 1u], added.y + carried);
+    atomicAdd(&words[min(place + 1u, arrayLength(&words) - 1u)], added.y + carried);
 }
 #endif
 
@@ -123,7 +123,7 @@ fn scatter_steps(@builtin(global_invocation_id) id: vec3<u32>) {
     let slopes = box_slopes(view);
     var bent = bent_ray(refraction, view, ray, span);
     let first = 0u;
-    let end = steps.most;
+    let end = min(steps.most, MOST_RAY_STEPS);
 #else
     let walk = slice_walk(view, ray, span);
     let first = walk.first;

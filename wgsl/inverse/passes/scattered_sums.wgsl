@@ -31,10 +31,10 @@ fn taken(number: u32, channel: u32) -> f32 {
     words[place] = 0u;
     return sum;
 #else
-    let place = min(2u * number, arrayLength(&words) - 2u);
-    let both = vec2<u32>(words[place], words[place + 1u]);
+    let place = min(2u * number, max(arrayLength(&words), 2u) - 2u);
+    let both = vec2<u32>(words[place], words[min(place + 1u, arrayLength(&words) - 1u)]);
     words[place] = 0u;
-    words[place + 1u] = 0u;
+    words[min(place + 1u, arrayLength(&words) - 1u)] = 0u;
     let most = arrayLength(&greatest) - 1u;
     let exponent = fixed_exponent(greatest[min(channel, most)], greatest[min(4u + channel, most)]);
     return fixed_number(both, exponent, pixel_exponent(view.width * view.height));

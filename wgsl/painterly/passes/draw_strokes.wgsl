@@ -7,9 +7,10 @@
 // binding style: the style.
 // binding strokes: the strokes.
 // binding order: numbers of strokes, in the order that they are drawn in.
-// binding brushes: brushes, premultiplied linear RGB that the stroke's colour tints, and opacity.
+// binding brushes: brushes, premultiplied linear RGB that the stroke's colour tints, and opacity; what is not finite counts as 0.
 // binding brush_sampler: linear, with mipmaps.
 
+#import airlight::core::finite::{finite_or, finite_or_rgb}
 #import airlight::painterly::stroke::{Stroke, StrokeFrame, StrokeStyle, of_layer}
 #import airlight::painterly::stroke_expand::{
     quad_corner, corner_position, clip_from_picture, brush_coordinates, brush_layer, tint_factor
@@ -46,5 +47,6 @@ fn vertex_stroke(@builtin(vertex_index) vertex: u32) -> Corner {
 
 @fragment
 fn fragment_stroke(corner: Corner) -> @location(0) vec4<f32> {
-    return corner.tint * textureSample(brushes, brush_sampler, corner.coordinates, corner.brush);
+    let brush = textureSample(brushes, brush_sampler, corner.coordinates, corner.brush);
+    return corner.tint * vec4<f32>(finite_or_rgb(brush.rgb, 0.0), finite_or(brush.a, 0.0));
 }

@@ -11,6 +11,7 @@
 // binding brushes: brushes, premultiplied; opacity in alpha.
 // binding brush_sampler: linear, with mipmaps.
 
+#import airlight::core::finite::finite_or
 #import airlight::painterly::stroke::{Stroke, StrokeFrame, StrokeStyle, STROKE_GONE, of_layer, target_opacity}
 #import airlight::painterly::stroke_density::density_of_stroke
 #import airlight::painterly::stroke_expand::{
@@ -53,7 +54,7 @@ fn vertex_density(@builtin(vertex_index) vertex: u32) -> Corner {
 
 @fragment
 fn fragment_density(corner: Corner) -> @location(0) vec4<f32> {
-    let opacity = textureSample(brushes, brush_sampler, corner.coordinates, corner.brush).a;
+    let opacity = finite_or(textureSample(brushes, brush_sampler, corner.coordinates, corner.brush).a, 0.0);
     let inside = all(corner.coordinates >= vec2<f32>(0.0)) && all(corner.coordinates <= vec2<f32>(1.0));
     return corner.density * select(0.0, opacity, inside);
 }

@@ -34,7 +34,7 @@
 #import airlight::scattering::single_scatter::{Medium, in_scattered}
 
 struct MarchParameters {
-    /// Steps a ray, at least 1.
+    /// Steps a ray, 1..65536.
     steps: u32,
     /// Where in each step the sample lies, 0..1; unused with jitter.
     offset: f32,

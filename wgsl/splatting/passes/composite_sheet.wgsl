@@ -34,7 +34,7 @@
 // binding surface_light: after row; all zero before the first sheet; with SPREAD only.
 // binding scattering: cones of scattered light; with SCATTERING only.
 // binding shadow_back: what arrives from behind the sheet, linear RGB, rgba16float; with BACK only.
-// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
 // binding picture: out of show_sheets, radiance of all sheets, and the transmittance to what lies behind them.
@@ -50,6 +50,7 @@
 #import airlight::splatting::sheet_shading::mean_transmittance
 #endif
 #ifdef POLYGONS
+#import airlight::core::finite::finite_or_rgb
 #import airlight::splatting::surface_shadow::{NO_SURFACE, heights_before_surface, share_of_sheet, mean_before_surface, is_surface}
 #import airlight::splatting::surface_shadow::{off_surface, light_before_surfaces, light_on_surface, STEEPEST_TEXELS}
 #endif
@@ -191,10 +192,10 @@ struct SeenSurface {
 fn seen_surface(pixel: vec2<u32>, height: f32) -> SeenSurface {
     let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
     let point = ray.origin + ray.direction * max(place_at_height(ray, height), 0.0);
-    let facing = textureLoad(normal, pixel, 0).xyz;
+    let facing = finite_or_rgb(textureLoad(normal, pixel, 0).xyz, 0.0);
     let unit = facing * inverseSqrt(max(dot(facing, facing), 1e-12));
     let to_light = direction_to_light(light, point);
-    let color = clamp(textureLoad(albedo, pixel, 0).rgb, vec3<f32>(0.0), vec3<f32>(1.0));
+    let color = clamp(finite_or_rgb(textureLoad(albedo, pixel, 0).rgb, 0.0), vec3<f32>(0.0), vec3<f32>(1.0));
     let texel = metres_of_texel(light_camera.clip_from_world, f32(textureDimensions(light_heights).x), point);
     return SeenSurface(point, unit, to_light, -ray.direction, color, off_surface(texel, point, unit, to_light), texel);
 }
