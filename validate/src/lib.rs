@@ -35,6 +35,8 @@ pub mod check;
 pub mod flat;
 #[cfg(feature = "command")]
 pub mod manifest;
+#[cfg(feature = "command")]
+pub mod tree;
 
 pub use compose::{Composed, core_capabilities};
 pub use definitions::{Definition, Definitions};

@@ -3,7 +3,6 @@
 
 mod command;
 
-use airlight_validate::check::{Format, Tool};
 use clap::{Parser, Subcommand};
 use command::Stop;
 use std::{
@@ -24,19 +23,13 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Job {
-    /// Check every module alone and every pass in every permutation.
-    Check {
-        /// Folder with `<system>/<module>.wgsl`; default `wgsl` if it is here, else the built-in library.
-        dir: Option<PathBuf>,
-        /// Form of the report.
-        #[arg(long, value_enum, default_value_t)]
-        format: Format,
-        /// Programs whose absence is a finding, with commas between.
-        #[arg(long, value_enum, value_delimiter = ',', value_name = "PROGRAM,…")]
-        require: Vec<Tool>,
-        /// Print findings only.
-        #[arg(long, short)]
-        quiet: bool,
+    /// Check every module alone and every shader in every permutation.
+    Check(command::check::Arguments),
+    /// Explain a kind of finding: what it is, why it goes unseen, how to mend it.
+    Explain {
+        /// The name in brackets before the finding; all of them with a line each where it is left out.
+        #[arg(value_name = "LINT")]
+        name: Option<String>,
     },
     /// Write what an engine binds of every pass to `DIR/manifest.json`.
     Manifest {
@@ -65,7 +58,8 @@ fn main() -> ExitCode {
     // Panics of back ends are caught and reported as findings; their traces would only be noise.
     std::panic::set_hook(Box::new(|_| {}));
     let done = std::panic::catch_unwind(|| match arguments.command {
-        Job::Check { dir, format, require, quiet } => command::check::run(dir, format, require, quiet),
+        Job::Check(arguments) => command::check::run(arguments),
+        Job::Explain { name } => command::explain::run(name.as_deref()),
         Job::Manifest { dir, check, out } => command::manifest::run(&dir, check, out),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
     });

@@ -2,6 +2,7 @@
 //! The subcommands, and what they share: the library that is read, files that are written, errors.
 
 pub(crate) mod check;
+pub(crate) mod explain;
 pub(crate) mod flat;
 pub(crate) mod manifest;
 
