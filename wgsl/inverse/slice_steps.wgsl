@@ -113,7 +113,7 @@ fn ray_span(ray: SliceRay, limit: f32) -> vec2<f32> {
     let safe = select(ray.direction, vec3<f32>(1.0), still);
     let low = -ray.origin / safe;
     let high = (vec3<f32>(1.0) - ray.origin) / safe;
-    let inside = ray.origin >= vec3<f32>(0.0) & ray.origin <= vec3<f32>(1.0);
+    let inside = (ray.origin >= vec3<f32>(0.0)) & (ray.origin <= vec3<f32>(1.0));
     let enters = select(min(low, high), vec3<f32>(0.0), still);
     let leaves = select(max(low, high), select(vec3<f32>(-1.0), vec3<f32>(3e38), inside), still);
     let begins = max(max(enters.x, enters.y), max(enters.z, 0.0));

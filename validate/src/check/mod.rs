@@ -91,6 +91,11 @@ pub fn run(library: &Library, options: &Options) -> Result<Report, Error> {
     let mut found: Vec<Finding> = found.into_iter().flatten().collect();
     name_unused(library, &mut found);
     report.findings.append(&mut found);
+    // What is not there cannot be used either.
+    let place = |finding: &Finding| (finding.file.clone(), finding.line, finding.column);
+    let absent: BTreeSet<_> =
+        report.findings.iter().filter(|finding| finding.check == "unresolved-import").map(place).collect();
+    report.findings.retain(|finding| finding.check != "unused-import" || !absent.contains(&place(finding)));
     report.findings.retain(|finding| !options.allow.contains(&finding.check));
     report.tidy(library.root());
     if library.foreign.is_some() {

@@ -155,7 +155,9 @@ impl Report {
 
     /// Findings in the order of files and lines.
     pub(crate) fn sort(&mut self) {
-        self.findings.sort_by(|a, b| (&a.file, a.line, a.column).cmp(&(&b.file, b.line, b.column)));
+        let key =
+            |finding: &Finding| (finding.file.clone(), finding.line, finding.column, finding.check.clone());
+        self.findings.sort_by_cached_key(key);
     }
 
     /// The report in a form; `quiet` leaves out of the human one what is not a finding.

@@ -47,6 +47,9 @@ fn an_error_in_a_module_is_reported_once_at_its_own_line() {
 #[test]
 fn an_error_in_an_unused_function_is_found() {
     let module = format!("{MODULE}fn unused() -> u32 {{ return 1.0; }}\n");
+    assert_eq!(found(&module, PASS), [pair("compose", "core/leaf.wgsl:4")]);
+    // The composer validates what is used only.
+    let module = format!("{MODULE}fn unused() -> f32 {{ return 1u; }}\n");
     assert_eq!(found(&module, PASS), [pair("unused-broken", "core/leaf.wgsl:4")]);
     // Nothing imports it: then it is an error like others.
     let pass = "@compute @workgroup_size(1) fn main() {}";

@@ -225,16 +225,13 @@ mod tests {
 
     #[test]
     fn a_program_that_does_not_end_is_stopped() {
-        let Some(sleep) = std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())
-            .map(|folder| folder.join("sleep"))
-            .find(|file| file.is_file())
-        else {
-            return;
-        };
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let mut programs = std::env::split_paths(&path).map(|folder| folder.join("tail"));
+        let Some(tail) = programs.find(|file| file.is_file()) else { return };
         let folder = tempfile::tempdir().unwrap();
-        // The argument is the file's name: a number of seconds.
-        let script = folder.path().join("600");
-        let error = run_within(Duration::from_millis(50), &sleep, &["600"], &script).unwrap_err();
+        let file = folder.path().join("followed");
+        fs::write(&file, "").unwrap();
+        let error = run_within(Duration::from_millis(50), &tail, &["-f"], &file).unwrap_err();
         assert!(error.contains("no answer"), "{error}");
     }
 }

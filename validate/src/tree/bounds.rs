@@ -7,14 +7,41 @@ use crate::check::lint::tokens::tokens;
 /// The most levels that are open at a place: brackets, and operators before it in each of them.
 pub(super) const MOST_LEVELS: usize = 2_000;
 
+/// The most conditions, and the most braces of an import, that are open at a line.
+const MOST_DIRECTIVES: usize = 200;
+
 /// Where a text nests more than compilers bear, and why that is.
 pub(super) fn excess(text: &str) -> Option<(u32, u32, String)> {
+    let code = code(text);
+    directives(&code).or_else(|| levels(&code))
+}
+
+/// Conditions and lists of imports, which the composer reads line by line.
+fn directives(code: &str) -> Option<(u32, u32, String)> {
+    let mut conditions = 0_usize;
+    for (line, content) in (1..).zip(code.lines()) {
+        let Some(directive) = content.trim_start().strip_prefix('#') else { continue };
+        let directive = directive.trim_start();
+        if directive.starts_with("endif") {
+            conditions = conditions.saturating_sub(1);
+        } else if directive.starts_with("if") {
+            conditions += 1;
+        }
+        let braces = if directive.starts_with("import") { directive.matches('{').count() } else { 0 };
+        if conditions.max(braces) > MOST_DIRECTIVES {
+            return Some((line, 1, format!("nests more than {MOST_DIRECTIVES} directives; not checked")));
+        }
+    }
+    None
+}
+
+/// Brackets and operators.
+fn levels(code: &str) -> Option<(u32, u32, String)> {
     // Operators so far in each open bracket: a chain `a + b + c` is as deep as it is long.
     let mut open: Vec<usize> = vec![0];
     let mut levels = 0;
     let mut before = "";
-    let code = code(text);
-    for token in tokens(&code) {
+    for token in tokens(code) {
         let innermost = open.len() - 1;
         match token.text {
             "(" | "[" | "{" => {
@@ -36,9 +63,10 @@ pub(super) fn excess(text: &str) -> Option<(u32, u32, String)> {
                 }
             }
             _ if token.is_number() => {}
-            _ => {
-                levels += 1;
-                open[innermost] += 1;
+            sign => {
+                // `--` may be two signs before an operand.
+                levels += sign.len();
+                open[innermost] += sign.len();
             }
         }
         if levels > MOST_LEVELS {
@@ -61,7 +89,7 @@ mod tests {
             let found = excess(&expression(deep));
             assert_eq!(found.map(|(line, _, _)| line), Some(1), "{deep}");
         }
-        assert!(excess(&format!("fn f() {{ if a {{}} {} }}", "else if a {}".repeat(1_500))).is_some());
+        assert!(excess(&format!("fn f() {{ if a {{}} {} }}", "else if a {}".repeat(2_500))).is_some());
         for long in ["1, ", "a; ", "if a { b(); } ", "for (;;) { } ", "{ } "] {
             assert_eq!(excess(&expression(long)), None, "{long}");
         }
@@ -70,5 +98,10 @@ mod tests {
             None
         );
         assert_eq!(excess(&"}".repeat(100)), None);
+        assert!(
+            excess(&"#ifdef A\n".repeat(300)).is_some()
+                && excess(&"#ifdef A\n#endif\n".repeat(300)).is_none()
+        );
+        assert!(excess(&format!("#import {}", "a::{".repeat(300))).is_some());
     }
 }

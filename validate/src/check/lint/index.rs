@@ -13,7 +13,15 @@ pub(super) fn find(text: &Text, findings: &mut Vec<Finding>) {
         }
         let close = closing(tokens, index + 1);
         let mut at = index + 2;
-        while at < close {
+        let (mut depth, mut commas) = (0_usize, 0);
+        // The condition is evaluated whatever comes of it.
+        while at < close && commas < 2 {
+            match text.text(at) {
+                "(" => depth += 1,
+                ")" => depth = depth.saturating_sub(1),
+                "," if depth == 0 => commas += 1,
+                _ => {}
+            }
             if text.text(at) == "[" {
                 let end = closing(tokens, at).min(close);
                 if let Some(sign) = unguarded(text, at + 1, end) {
@@ -29,21 +37,24 @@ pub(super) fn find(text: &Text, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The first binary `+` or `-` of an index that neither a clamp, nor a remainder, nor a mask holds in range.
+/// The first binary `-`, or `+` with a number, of an index that neither a clamp, nor a remainder, nor a mask holds in range.
 fn unguarded(text: &Text, start: usize, end: usize) -> Option<usize> {
     let tokens = &text.tokens[start..end];
     let holds = |word: &str| matches!(word, "min" | "max" | "clamp" | "select" | "%" | "&");
     if tokens.iter().any(|token| holds(token.text)) {
         return None;
     }
-    let at = tokens.windows(2).position(|pair| {
-        let [before, sign] = pair else { return false };
+    let at = (1..tokens.len()).find(|&at| {
+        let (before, sign, step) = (tokens[at - 1], tokens[at].text, tokens.get(at + 1));
         let is_operand = before.is_word() || before.is_number() || matches!(before.text, ")" | "]");
-        is_operand && matches!(sign.text, "+" | "-")
+        // `i + 1` steps over the edge; `BEGIN + i` goes to a part of the array.
+        let is_step = step.is_some_and(|step| step.is_number())
+            && tokens.get(at + 2).is_none_or(|next| !matches!(next.text, "*" | "/" | "<<"));
+        is_operand && (sign == "-" || sign == "+" && is_step)
     })?;
     // Arithmetic of constants is known to the compilers.
     let is_constant = tokens.iter().all(|token| !token.is_word());
-    (!is_constant).then_some(start + at + 1)
+    (!is_constant).then_some(start + at)
 }
 
 #[cfg(test)]
@@ -58,7 +69,7 @@ mod tests {
 
     #[test]
     fn guarded_and_plain_indices_are_left() {
-        let source = "fn f() {\n  let a = select(b[max(i, 1u) - 1u], 0.0, i == 0u);\n  let c = select(b[i], b[2], i - 1u == 0u);\n  let d = b[i - 1u];\n  let e = select(b[(i + 1u) % 4u], b[3 - 1], c);\n}";
+        let source = "fn f() {\n  let a = select(b[max(i, 1u) - 1u], 0.0, i == 0u);\n  let c = select(b[i], b[2], i - 1u == 0u);\n  let d = b[i - 1u];\n  let e = select(b[(i + 1u) % 4u], b[3 - 1], c);\n  let g = select(b[BEGIN + i], b[BEGIN + 8u * i], c);\n  let h = select(1, 2, b[i - 1u] > 0.5);\n}";
         assert!(places(find, "select-index", source).is_empty());
     }
 }

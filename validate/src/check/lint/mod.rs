@@ -17,6 +17,7 @@ pub(crate) use directives::used_definitions;
 use crate::{
     Definitions, Library, Location,
     check::{Finding, Severity},
+    scan::without_comments,
 };
 use imports::Overrides;
 use std::collections::BTreeSet;
@@ -94,6 +95,7 @@ pub(crate) fn shaders<'a>(
         overrides.insert(module.path.clone(), names);
     }
     let mut seen = BTreeSet::new();
+    let mut files = BTreeSet::new();
     let mut findings = Vec::new();
     for (file, definitions) in texts {
         if !seen.insert((file, definitions)) {
@@ -104,9 +106,13 @@ pub(crate) fn shaders<'a>(
         let is_module = library.modules().iter().any(|module| module.file == file);
         let text = Text::new(file, &code, is_module, !library.is_plain(file));
         let mut own = Vec::new();
-        if text.is_composed {
+        if text.is_composed && files.insert(file) {
+            // An import may serve another set of definitions: all branches count.
+            let whole = without_comments(source);
+            imports::unused(&Text::new(file, &whole, is_module, true), &mut own);
             directives::conditions(source, &text, &mut own);
-            imports::unused(&text, &mut own);
+        }
+        if text.is_composed {
             imports::overrides(&text, &overrides, &mut own);
         }
         directives::layout_attributes(&text, &mut own);
