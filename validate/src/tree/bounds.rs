@@ -45,6 +45,10 @@ fn levels(code: &str) -> Option<(u32, u32, String)> {
         let innermost = open.len() - 1;
         match token.text {
             "(" | "[" | "{" => {
+                // A block after a block goes on with nothing.
+                if before == "}" {
+                    levels -= std::mem::take(&mut open[innermost]);
+                }
                 open.push(0);
                 levels += 1;
             }
