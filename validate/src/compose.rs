@@ -109,6 +109,8 @@ impl Library {
                 let added = composer.add_composable_module(ComposableModuleDescriptor {
                     source: &module.source,
                     file_path: &module.file,
+                    // A file that is imported by its name has no path of its own.
+                    as_name: module.path.starts_with('"').then(|| module.path.clone()),
                     ..Default::default()
                 });
                 if let Err(error) = added {
@@ -170,6 +172,9 @@ impl Library {
             let module = resolve(&import.path, |path| position(path).is_some());
             let Some(index) = module.and_then(position) else {
                 let path = &import.path;
+                if self.is_namespace(path) {
+                    continue;
+                }
                 return Err(wrong(format!("import of `{path}`, which is no module of the library")));
             };
             if index == limit {

@@ -16,6 +16,8 @@ pub(crate) struct Import {
     pub line: u32,
     /// Column of its last part, from 1.
     pub column: u32,
+    /// What the file calls it; `*` for all items of a module.
+    pub name: String,
 }
 
 /// A word, `::`-joined, or a single character, with its line and column.
@@ -104,8 +106,16 @@ fn tokenize(line: &str, skip: usize, number: u32, tokens: &mut Vec<Token>) {
     let mut at = skip;
     while at < letters.len() {
         let start = at;
-        while at < letters.len() && (is_identifier(letters[at]) || letters[at] == ':') {
-            at += 1;
+        while at < letters.len() {
+            if letters[at] == '"' {
+                // A file's name, whatever it holds.
+                let end = letters[at + 1..].iter().position(|&letter| letter == '"');
+                at = end.map_or(letters.len(), |end| at + end + 2);
+            } else if is_identifier(letters[at]) || letters[at] == ':' {
+                at += 1;
+            } else {
+                break;
+            }
         }
         if at > start {
             tokens.push((letters[start..at].iter().collect(), number, start as u32 + 1));
@@ -128,13 +138,29 @@ fn read(tokens: &[Token], imports: &mut Vec<Import>) {
                 prefixes.pop();
             }
             "as" => renamed = true,
-            _ if renamed => renamed = false,
+            _ if renamed => {
+                renamed = false;
+                if let Some(last) = imports.last_mut() {
+                    last.name = word.clone();
+                }
+            }
+            "*" => {
+                if let Some(last) = imports.last_mut() {
+                    last.path.truncate(last.path.trim_end_matches("::").len());
+                    last.name = word.clone();
+                }
+            }
             _ => {
                 let path = format!("{}{word}", prefixes.concat());
-                if tokens.get(index + 1).is_some_and(|next| next.0 == "{") {
+                let next = tokens.get(index + 1).map_or("", |next| next.0.as_str());
+                if next == "{" {
                     prefixes.push(word.clone());
+                } else if next.starts_with(is_identifier) && next != "as" {
+                    // The old form `#import module item, item`.
+                    prefixes.push(format!("{word}::"));
                 } else {
-                    imports.push(Import { path, line: *line, column: *column });
+                    let name = path.rsplit("::").next().unwrap_or_default().to_owned();
+                    imports.push(Import { path, line: *line, column: *column, name });
                 }
             }
         }
@@ -167,5 +193,14 @@ mod tests {
             [("a::b", 2, 9), ("a::c", 3, 9), ("a::e::f", 5, 3), ("a::e::g", 6, 3), ("a::e::i::j", 7, 7)];
         let expected: Vec<_> = expected.map(|(path, line, column)| (path.to_owned(), line, column)).to_vec();
         assert_eq!(paths(source), expected);
+        let names: Vec<String> = declared(source).into_iter().map(|import| import.name).collect();
+        assert_eq!(names, ["b", "d", "f", "h", "j"]);
+    }
+
+    #[test]
+    fn files_globs_and_the_old_form_are_read() {
+        let source = "#import \"a b/c.wgsl\"::{f, g} as x\n#import m::*\n#import a::b item, other\n";
+        let found: Vec<String> = declared(source).into_iter().map(|import| import.path).collect();
+        assert_eq!(found, ["\"a b/c.wgsl\"::f", "\"a b/c.wgsl\"::g", "m", "a::b::item", "a::b::other"]);
     }
 }

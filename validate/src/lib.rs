@@ -46,6 +46,7 @@ pub mod list;
 pub mod manifest;
 #[cfg(feature = "command")]
 pub mod vendor;
+pub mod tree;
 
 pub use compose::{Composed, core_capabilities};
 pub use definitions::{Definition, Definitions};

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A library of shader modules, passes and permutations.
 
+mod folder;
+
 use crate::{Definitions, Error, Location, Permutation, imports, permutations};
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fs,
     path::{Path, PathBuf},
 };
 
@@ -44,6 +45,9 @@ pub struct Library {
     /// Passes that no permutations file lists, and listed ones that have no file.
     pub(crate) unlisted: Vec<(Location, String)>,
     root: Option<PathBuf>,
+    /// What is known of a tree that is not laid out as Airlight is.
+    #[cfg(feature = "command")]
+    pub(crate) foreign: Option<Box<crate::tree::Foreign>>,
 }
 
 impl Library {
@@ -71,51 +75,6 @@ impl Library {
         }
         library.complete();
         library
-    }
-
-    /// A folder laid out like `wgsl/`: `<system>/<module>.wgsl`, `<system>/passes/<pass>.wgsl`,
-    /// `<system>/permutations`. Modules are ordered so that each follows what it imports.
-    ///
-    /// # Errors
-    /// An unreadable file, a malformed permutations file, a module without an import path, modules
-    /// that import each other, or a folder without shaders.
-    pub fn from_directory(directory: &Path) -> Result<Self, Error> {
-        let mut modules = Vec::new();
-        let mut passes = Vec::new();
-        let mut systems = BTreeMap::new();
-        for (system, folder) in folders(directory)? {
-            if system == "flat" || system.starts_with('.') {
-                continue;
-            }
-            for (module, path) in shaders(&folder)? {
-                let file = format!("{system}/{module}.wgsl");
-                let source = read(&path)?;
-                let path = import_path(&source).ok_or_else(|| Error::Shader {
-                    location: Location::line(&file, 1),
-                    message: format!("a module needs `#define_import_path airlight::{system}::{module}`"),
-                })?;
-                modules.push(ModuleSource { path, file, source, imports: Vec::new() });
-            }
-            for (pass, path) in shaders(&folder.join("passes"))? {
-                let file = format!("{system}/passes/{pass}.wgsl");
-                passes.push((format!("{system}/{pass}"), file, read(&path)?));
-            }
-            let listing = folder.join("permutations");
-            if listing.is_file() {
-                systems.insert(system, read(&listing)?);
-            }
-        }
-        if modules.is_empty() && passes.is_empty() {
-            return Err(Error::Empty(directory.to_owned()));
-        }
-        let mut library = Self::new(modules, passes, BTreeMap::new(), Some(directory.to_owned()));
-        library.modules = sorted(std::mem::take(&mut library.modules))?;
-        for (system, text) in systems {
-            let entries = permutations::parse(&format!("{system}/permutations"), &text)?;
-            library.list(&system, entries);
-        }
-        library.complete();
-        Ok(library)
     }
 
     /// The library with one more pass, `<system>/<name>`, that is not its own: it may import every module. It has
@@ -164,7 +123,7 @@ impl Library {
         library
     }
 
-    fn new(
+    pub(crate) fn new(
         mut modules: Vec<ModuleSource>,
         passes: Vec<(String, String, String)>,
         permutations: BTreeMap<String, Vec<Permutation>>,
@@ -181,7 +140,15 @@ impl Library {
                 PassSource { name, file, source, imports }
             })
             .collect();
-        Self { modules, passes, permutations, unlisted: Vec::new(), root }
+        Self {
+            modules,
+            passes,
+            permutations,
+            unlisted: Vec::new(),
+            root,
+            #[cfg(feature = "command")]
+            foreign: None,
+        }
     }
 
     fn list(&mut self, system: &str, entries: Vec<permutations::Entry>) {
@@ -308,6 +275,27 @@ impl Library {
         reached
     }
 
+    /// Whether a path is the beginning of paths of modules, which a tree of others may import.
+    pub(crate) fn is_namespace(&self, path: &str) -> bool {
+        let begins =
+            |module: &ModuleSource| module.path.strip_prefix(path).is_some_and(|rest| rest.starts_with("::"));
+        self.is_foreign() && self.modules.iter().any(begins)
+    }
+
+    /// Whether the library is a tree that is not laid out as Airlight is.
+    fn is_foreign(&self) -> bool {
+        #[cfg(feature = "command")]
+        return self.foreign.is_some();
+        #[cfg(not(feature = "command"))]
+        false
+    }
+
+    /// Whether a file is read by no composer.
+    #[cfg(feature = "command")]
+    pub(crate) fn is_plain(&self, file: &str) -> bool {
+        self.foreign.as_ref().is_some_and(|foreign| foreign.plain.contains(file))
+    }
+
     /// The text of a file of the library.
     pub(crate) fn text(&self, file: &str) -> Option<&str> {
         let module = self.modules.iter().find(|module| module.file == file);
@@ -325,7 +313,7 @@ pub(crate) fn resolve(path: &str, known: impl Fn(&str) -> bool) -> Option<&str> 
 }
 
 /// Modules that a source imports or names in full, but for itself.
-fn used(source: &str, paths: &BTreeSet<String>, own: &str) -> Vec<String> {
+pub(crate) fn used(source: &str, paths: &BTreeSet<String>, own: &str) -> Vec<String> {
     let known = |path: &str| paths.contains(path);
     let mut modules: BTreeSet<String> = imports::declared(source)
         .iter()
@@ -338,7 +326,7 @@ fn used(source: &str, paths: &BTreeSet<String>, own: &str) -> Vec<String> {
 }
 
 /// The path in `#define_import_path`.
-fn import_path(source: &str) -> Option<String> {
+pub(crate) fn import_path(source: &str) -> Option<String> {
     let text = crate::scan::without_comments(source);
     text.lines()
         .find_map(|line| line.trim().strip_prefix("#define_import_path"))
@@ -346,76 +334,8 @@ fn import_path(source: &str) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// Depth-first by imports; otherwise in the order given.
-fn sorted(modules: Vec<ModuleSource>) -> Result<Vec<ModuleSource>, Error> {
-    fn visit(
-        index: usize,
-        modules: &[ModuleSource],
-        trail: &mut Vec<usize>,
-        order: &mut Vec<usize>,
-    ) -> Result<(), Error> {
-        if order.contains(&index) {
-            return Ok(());
-        }
-        if let Some(start) = trail.iter().position(|&earlier| earlier == index) {
-            let cycle = trail[start..].iter().chain([&index]);
-            return Err(Error::Cycle {
-                location: Location::file(&modules[index].file),
-                cycle: cycle.map(|&at| modules[at].path.clone()).collect(),
-            });
-        }
-        trail.push(index);
-        for import in &modules[index].imports {
-            if let Some(next) = modules.iter().position(|module| module.path == *import) {
-                visit(next, modules, trail, order)?;
-            }
-        }
-        trail.pop();
-        order.push(index);
-        Ok(())
-    }
-    let mut order = Vec::with_capacity(modules.len());
-    for index in 0..modules.len() {
-        visit(index, &modules, &mut Vec::new(), &mut order)?;
-    }
-    let mut slots: Vec<Option<ModuleSource>> = modules.into_iter().map(Some).collect();
-    Ok(order.into_iter().filter_map(|index| slots[index].take()).collect())
-}
-
 fn listing_error(error: &Error) -> (Location, String) {
     (error.location().cloned().unwrap_or_else(|| Location::file("permutations")), error.message())
-}
-
-fn read(path: &Path) -> Result<String, Error> {
-    fs::read_to_string(path).map_err(|source| Error::Read { path: path.to_owned(), source })
-}
-
-/// Names and paths in a folder, sorted, so that the result does not depend on the file system.
-fn entries(directory: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
-    let failed = |source| Error::Read { path: directory.to_owned(), source };
-    let mut entries = Vec::new();
-    for entry in fs::read_dir(directory).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if let Some(name) = path.file_name().and_then(|name| name.to_str()) {
-            entries.push((name.to_owned(), path));
-        }
-    }
-    entries.sort();
-    Ok(entries)
-}
-
-fn folders(directory: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
-    let entries = entries(directory)?;
-    Ok(entries.into_iter().filter(|(_, path)| path.is_dir()).collect())
-}
-
-/// Stems and paths of the `.wgsl` files in a folder; none where there is no folder.
-fn shaders(directory: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
-    if !directory.is_dir() {
-        return Ok(Vec::new());
-    }
-    let entries = entries(directory)?.into_iter();
-    Ok(entries.filter_map(|(name, path)| Some((name.strip_suffix(".wgsl")?.to_owned(), path))).collect())
 }
 
 #[cfg(all(test, feature = "command"))]

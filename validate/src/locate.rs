@@ -38,6 +38,9 @@ pub(crate) fn locate(
         Position::Directive(byte, word) => (directive(&original, byte, word), None),
         Position::Text(text) => (line_with(&original, &text, ""), None),
     };
+    // What the composer appends is beyond the end.
+    let last = original.matches('\n').count() as u32 + 1;
+    let line = line.map(|line: u32| line.clamp(1, last));
     let mut message = undecorate(&message);
     if let Some(hint) = hint(&message, library) {
         message = format!("{message}; {hint}");

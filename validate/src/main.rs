@@ -29,19 +29,13 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Job {
-    /// Check every module alone and every pass in every permutation.
-    Check {
-        /// Folder with `<system>/<module>.wgsl`; default `wgsl` if it is here, else the built-in library.
-        dir: Option<PathBuf>,
-        /// Form of the report.
-        #[arg(long, value_enum, default_value_t)]
-        format: Format,
-        /// Programs whose absence is a finding, with commas between.
-        #[arg(long, value_enum, value_delimiter = ',', value_name = "PROGRAM,…")]
-        require: Vec<Tool>,
-        /// Print findings only.
-        #[arg(long, short)]
-        quiet: bool,
+    /// Check every module alone and every shader in every permutation.
+    Check(command::check::Arguments),
+    /// Explain a kind of finding: what it is, why it goes unseen, how to mend it.
+    Explain {
+        /// The name in brackets before the finding; all of them with a line each where it is left out.
+        #[arg(value_name = "LINT")]
+        name: Option<String>,
     },
     /// Write what an engine binds of every pass to `DIR/manifest.json`.
     Manifest {
@@ -148,6 +142,9 @@ fn main() -> ExitCode {
         Job::Abi { old, new } => command::abi::run(&old, &new),
         Job::Docs { dir, out, check } => command::docs::run(&dir, &out, check),
         Job::List { dir, check } => command::list::run(&dir, check),
+        Job::Check(arguments) => command::check::run(arguments),
+        Job::Explain { name } => command::explain::run(name.as_deref()),
+        Job::Manifest { dir, check, out } => command::manifest::run(&dir, check, out),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
         Job::Vendor { dir, passes, form, force } => command::vendor::run(&dir, &passes, form, force),
         Job::Verify { dir, format } => command::verify::run(&dir, format),

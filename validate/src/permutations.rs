@@ -31,6 +31,26 @@ pub(crate) struct Entry {
 
 /// Reads a permutations file; `file` is what errors call it.
 pub(crate) fn parse(file: &str, text: &str) -> Result<Vec<Entry>, Error> {
+    let entries = read(file, text, is_name)?;
+    for entry in &entries {
+        if !entry.permutations.iter().any(|permutation| permutation.name == "default") {
+            return Err(Error::Permutations {
+                location: Location::line(file, entry.line),
+                message: format!("pass `{}` has no permutation `default`", entry.pass),
+            });
+        }
+    }
+    Ok(entries)
+}
+
+/// Reads a file that lists files and import paths instead of passes; none of them needs a `default`.
+// What is checked is part of the command.
+#[cfg_attr(not(feature = "command"), allow(dead_code))]
+pub(crate) fn parse_paths(file: &str, text: &str) -> Result<Vec<Entry>, Error> {
+    read(file, text, |_| true)
+}
+
+fn read(file: &str, text: &str, is_subject: impl Fn(&str) -> bool) -> Result<Vec<Entry>, Error> {
     let mut entries: Vec<Entry> = Vec::new();
     for (line, content) in (1..).zip(text.lines()) {
         let content = content.split('#').next().unwrap_or_default().trim();
@@ -39,7 +59,7 @@ pub(crate) fn parse(file: &str, text: &str) -> Result<Vec<Entry>, Error> {
         }
         let wrong = |message: String| Error::Permutations { location: Location::line(file, line), message };
         let Some(permutation) = content.strip_prefix('+') else {
-            if !is_name(content) {
+            if !is_subject(content) {
                 return Err(wrong(format!(
                     "`{content}` is neither a pass name nor `+ name: DEFINITION DEFINITION=VALUE`"
                 )));
@@ -69,14 +89,6 @@ pub(crate) fn parse(file: &str, text: &str) -> Result<Vec<Entry>, Error> {
         }
         let definitions = definitions.parse().map_err(|error: Error| wrong(error.to_string()))?;
         entry.permutations.push(Permutation { name: name.to_owned(), definitions, line });
-    }
-    for entry in &entries {
-        if !entry.permutations.iter().any(|permutation| permutation.name == "default") {
-            return Err(Error::Permutations {
-                location: Location::line(file, entry.line),
-                message: format!("pass `{}` has no permutation `default`", entry.pass),
-            });
-        }
     }
     Ok(entries)
 }

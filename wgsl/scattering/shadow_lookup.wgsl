@@ -14,7 +14,7 @@
 
 #import airlight::core::finite::finite_or
 #import airlight::core::light::{Light, shadow_position}
-#import airlight::core::shadow_views::{ShadowViews, ViewPosition, view_position, point_at_depth}
+#import airlight::core::shadow_views::{ViewPosition, point_at_depth}
 
 /// A texel of a shadow map, on the way from a point in the world.
 struct Shadow {

@@ -4,7 +4,7 @@
 use crate::{Access, Binding, BindingKind, Composed, Reflection, check::panic_text};
 use naga::{
     ResourceBinding,
-    back::{glsl, hlsl, msl, pipeline_constants::process_overrides, spv},
+    back::{PipelineConstants, glsl, hlsl, msl, pipeline_constants::process_overrides, spv},
     proc::BoundsCheckPolicies,
 };
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -80,7 +80,7 @@ fn write_unguarded(
         &composed.module,
         &composed.info,
         Some((stage, name.as_str())),
-        &Default::default(),
+        &values(&composed.module),
     );
     let (module, info) = processed.map_err(|error| error.to_string())?;
     let (module, info) = (module.as_ref(), info.as_ref());
@@ -131,6 +131,17 @@ fn write_unguarded(
             Ok(Written::Text(text))
         }
     }
+}
+
+/// A value for each pipeline override that has none; which one does not matter to a back end.
+fn values(module: &naga::Module) -> PipelineConstants {
+    let without = module.overrides.iter().filter(|(_, constant)| constant.init.is_none());
+    without
+        .filter_map(|(_, constant)| match constant.id {
+            Some(id) => Some((id.to_string(), 1.0)),
+            None => Some((constant.name.clone()?, 1.0)),
+        })
+        .collect()
 }
 
 fn resource(binding: &Binding) -> ResourceBinding {

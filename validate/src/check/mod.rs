@@ -2,14 +2,20 @@
 //! Every module alone and every pass in every permutation through every compiler at hand.
 
 mod backends;
+mod catalogue;
 mod expected;
+mod form;
 mod limits;
-mod lint;
+pub(crate) mod lint;
+mod origin;
+mod plain;
 mod report;
 mod tools;
 mod unit;
+pub(crate) mod watch;
 
 pub use backends::Backend;
+pub use catalogue::{LINTS, Lint};
 pub use expected::{Expected, Verdict, judge, shipped as shipped_expected_failures};
 pub use limits::{Excess, Usage, excesses, implicit_padding, usage, violations};
 pub use report::{Finding, Format, Report, Severity};
@@ -26,6 +32,8 @@ use std::{
     },
     thread,
 };
+use crate::{Definitions, Error, Library, Location};
+use std::{any::Any, collections::BTreeSet, ffi::OsString};
 use unit::{Context, Subject};
 
 /// What to check beside the shaders themselves.
@@ -35,6 +43,8 @@ pub struct Options {
     pub require: Vec<Tool>,
     /// Folders to look for programs in, joined as in `PATH`; `PATH` itself where there is none.
     pub path: Option<OsString>,
+    /// Names of [`LINTS`] whose findings are left out.
+    pub allow: Vec<String>,
 }
 
 /// Checks a library.
@@ -49,7 +59,13 @@ pub fn run(library: &Library, options: &Options) -> Result<Report, Error> {
     for tool in Tool::ALL {
         match tools::find(tool, path.as_deref()) {
             Some(path) => found.push((tool, path)),
-            None => report.skipped.push(format!("{tool}: not on the PATH; {}", tool.remedy())),
+            None => {
+                let less = match tool {
+                    Tool::Tint => "; `uniformity` sees the plainest cases only without it",
+                    _ => "",
+                };
+                report.skipped.push(format!("{tool}: not on the PATH; {}{less}", tool.remedy()));
+            }
         }
         if options.require.contains(&tool) && !found.iter().any(|(there, _)| *there == tool) {
             report.findings.push(Finding::new(
@@ -60,57 +76,122 @@ pub fn run(library: &Library, options: &Options) -> Result<Report, Error> {
             ));
         }
     }
-    let expected = match expected::shipped() {
-        Ok(expected) => expected,
-        Err(error) => {
-            report.findings.push(Finding::of("expected-failures", &error));
-            Vec::new()
+    let mut expected = Vec::new();
+    match &library.foreign {
+        Some(foreign) => {
+            report.findings.extend(foreign.findings.iter().cloned());
+            report.skipped.extend(foreign.skipped.iter().cloned());
         }
-    };
-    report.findings.extend(lint::lint(library));
-
+        None => {
+            match expected::shipped() {
+                Ok(list) => expected = list,
+                Err(error) => report.findings.push(Finding::of("expected-failures", &error)),
+            }
+            report.findings.extend(lint::layout(library));
+        }
+    }
     let subjects = subjects(library);
-    report.modules = library.modules().len();
-    report.permutations = subjects.iter().filter(|subject| matches!(subject, Subject::Pass { .. })).count();
-    let context = Context { library, expected: &expected, tools: &found, folder: folder.path() };
-    report.findings.extend(run_all(&subjects, &context));
+    let modules: BTreeSet<&str> = subjects.iter().filter_map(Subject::module).collect();
+    report.modules = modules.len();
+    report.permutations = subjects.iter().filter(|subject| subject.module().is_none()).count();
+    let texts = lint_texts(library, &subjects);
+    report.findings.extend(lint::shaders(library, texts.into_iter()));
+
+    let context = Context { library: library.clone(), expected, tools: found, folder };
+    let found = watch::run_all(subjects, context, watch::PATIENCE);
+    let mut found: Vec<Finding> = found.into_iter().flatten().collect();
+    name_unused(library, &mut found);
+    report.findings.append(&mut found);
+    // What is not there cannot be used either.
+    let place = |finding: &Finding| (finding.file.clone(), finding.line, finding.column);
+    let absent: BTreeSet<_> =
+        report.findings.iter().filter(|finding| finding.check == "unresolved-import").map(place).collect();
+    report.findings.retain(|finding| finding.check != "unused-import" || !absent.contains(&place(finding)));
+    report.findings.retain(|finding| !options.allow.contains(&finding.check));
     report.tidy(library.root());
+    if library.foreign.is_some() {
+        report.sort();
+    }
     Ok(report)
 }
 
-/// Every subject on a few threads; findings in the order of the subjects.
-fn run_all(subjects: &[Subject], context: &Context) -> Vec<Finding> {
-    let next = AtomicUsize::new(0);
-    let results = Mutex::new(Vec::new());
-    let threads = thread::available_parallelism().map_or(2, usize::from).min(8);
-    thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(subject) = subjects.get(index) else { break };
-                    let findings = unit::check(context, subject, index);
-                    // A poisoned lock still holds what the others found.
-                    let mut results = results.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                    results.push((index, findings));
-                }
-            });
+/// Files with the definitions that they are checked with; what cannot be checked is still read.
+fn lint_texts<'a>(library: &'a Library, subjects: &'a [Subject]) -> Vec<(&'a str, &'a Definitions)> {
+    let mut texts = Vec::new();
+    for subject in subjects {
+        let file = match subject {
+            Subject::Module { path, .. } => library.module(path).map(|module| module.file.as_str()),
+            Subject::Pass { name, .. } => library.pass(name).map(|pass| pass.file.as_str()),
+        };
+        texts.extend(file.ok().map(|file| (file, subject.definitions())));
+    }
+    if let Some(foreign) = &library.foreign {
+        texts.extend(foreign.unchecked.iter().map(|file| (file.as_str(), &foreign.base)));
+    }
+    texts
+}
+
+/// Gives an error its own name that only shows where the module is checked alone: what imports the
+/// module composes, since the composer drops what is not used.
+fn name_unused(library: &Library, findings: &mut [Finding]) {
+    let reached: BTreeSet<&str> = library
+        .passes()
+        .iter()
+        .flat_map(|pass| library.closure(&pass.imports))
+        .map(|module| module.file.as_str())
+        .collect();
+    let place = |finding: &Finding| (finding.file.clone(), finding.line, finding.column);
+    let in_pass: BTreeSet<_> =
+        findings.iter().filter(|f| f.check == "compose" && f.permutation.is_some()).map(place).collect();
+    for finding in findings.iter_mut().filter(|finding| finding.check == "compose") {
+        if reached.contains(finding.file.as_str()) && !in_pass.contains(&place(finding)) {
+            finding.check = "unused-broken".to_owned();
+            finding.message +=
+                "; no shader that imports it shows this, since the composer drops what is not used";
         }
-    });
-    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    results.sort_by_key(|(index, _)| *index);
-    results.into_iter().flat_map(|(_, findings)| findings).collect()
+    }
 }
 
 /// Modules with each set of definitions that a permutation gives them, then the permutations.
 fn subjects(library: &Library) -> Vec<Subject> {
     let mut subjects = Vec::new();
     for (module, sets) in definitions_of_modules(library) {
+    // Every permutation, and the modules that it reaches.
+    let mut importers = Vec::new();
+    for pass in library.passes() {
+        for permutation in library.permutations.get(&pass.name).into_iter().flatten() {
+            let definitions = &permutation.definitions;
+            importers.push((definitions, library.reached(&pass.source, definitions)));
+        }
+    }
+    let is_checked = |file: &str| library.foreign.as_ref().is_none_or(|foreign| foreign.is_checked(file));
+    for module in library.modules().iter().filter(|module| is_checked(&module.file)) {
+        // With an entry point it is checked as a shader.
+        if library.foreign.is_some() && library.pass(&module.file).is_ok() {
+            continue;
+        }
+        let mut reads = BTreeSet::new();
+        for other in library.closure(std::slice::from_ref(&module.path)) {
+            reads.extend(lint::used_definitions(&other.source).into_keys());
+        }
+        let mut sets: BTreeSet<Definitions> = importers
+            .iter()
+            .filter(|(_, reached)| reached.contains(&module.path))
+            .map(|(definitions, _)| definitions.iter().filter(|(name, _)| reads.contains(*name)).collect())
+            .collect();
+        let own = library.permutations.get(&module.path).filter(|_| library.foreign.is_some());
+        if let Some(own) = own {
+            sets = own.iter().map(|permutation| permutation.definitions.clone()).collect();
+        }
+        if sets.is_empty() {
+            let base = library.foreign.as_ref().map(|foreign| foreign.base.iter());
+            sets.insert(base.into_iter().flatten().filter(|(name, _)| reads.contains(*name)).collect());
+        }
         for definitions in sets {
             subjects.push(Subject::Module { path: module.path.clone(), definitions });
         }
     }
-    for pass in library.passes() {
+    for pass in library.passes().iter().filter(|pass| is_checked(&pass.file)) {
         for permutation in library.permutations.get(&pass.name).into_iter().flatten() {
             subjects.push(Subject::Pass {
                 name: pass.name.clone(),

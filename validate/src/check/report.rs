@@ -17,7 +17,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Error => "error",
             Self::Warning => "warning",
@@ -115,6 +115,10 @@ struct Document<'a> {
     findings: &'a [Finding],
     skipped: &'a [String],
     checked: usize,
+    modules: usize,
+    permutations: usize,
+    errors: usize,
+    warnings: usize,
 }
 
 impl Report {
@@ -147,6 +151,13 @@ impl Report {
                 }
             }
         }
+    }
+
+    /// Findings in the order of files and lines.
+    pub(crate) fn sort(&mut self) {
+        let key =
+            |finding: &Finding| (finding.file.clone(), finding.line, finding.column, finding.check.clone());
+        self.findings.sort_by_cached_key(key);
     }
 
     /// The report in a form; `quiet` leaves out of the human one what is not a finding.
@@ -207,6 +218,10 @@ impl Report {
             findings: &self.findings,
             skipped: &self.skipped,
             checked: self.modules + self.permutations,
+            modules: self.modules,
+            permutations: self.permutations,
+            errors: self.count(Severity::Error),
+            warnings: self.count(Severity::Warning),
         };
         let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
         text.push('\n');

@@ -48,6 +48,12 @@ fn an_error_in_a_module_is_reported_once_at_its_own_line() {
 fn an_error_in_an_unused_function_is_found() {
     let module = format!("{MODULE}fn unused() -> u32 {{ return 1.0; }}\n");
     assert_eq!(found(&module, PASS), [pair("compose", "core/leaf.wgsl:4")]);
+    // The composer validates what is used only.
+    let module = format!("{MODULE}fn unused() -> f32 {{ return 1u; }}\n");
+    assert_eq!(found(&module, PASS), [pair("unused-broken", "core/leaf.wgsl:4")]);
+    // Nothing imports it: then it is an error like others.
+    let pass = "@compute @workgroup_size(1) fn main() {}";
+    assert_eq!(found(&module, pass), [pair("compose", "core/leaf.wgsl:4")]);
 }
 
 #[test]
@@ -55,9 +61,9 @@ fn formats_limits_and_padding_are_checked() {
     let pass = PASS.replace("rgba16float", "rg8unorm");
     assert!(found(MODULE, &pass).contains(&pair("formats", "core/passes/pass.wgsl:6")));
     let pass = PASS.replace("workgroup_size(8, 8)", "workgroup_size(32, 32)");
-    assert_eq!(found(MODULE, &pass), [pair("limits", "core/passes/pass.wgsl")]);
+    assert_eq!(found(MODULE, &pass), [pair("limits", "core/passes/pass.wgsl:8")]);
     let pass = PASS.replace("color: vec3<f32>, gain: f32", "gain: f32, color: vec3<f32>");
-    assert_eq!(found(MODULE, &pass), [pair("padding", "core/passes/pass.wgsl")]);
+    assert_eq!(found(MODULE, &pass), [pair("padding", "core/passes/pass.wgsl:2")]);
 }
 
 #[test]
@@ -78,13 +84,13 @@ fn what_glsl_cannot_have_is_an_unexpected_failure() {
             "var linear: sampler;\n@group(#{GROUP}) @binding(9) var nearest: sampler;",
         )
         .replace("* leaf::twice", "+ leaf::look(picture, nearest, vec2<f32>(id.xy)) * leaf::twice");
-    assert_eq!(found(MODULE, &pass), [pair("glsl", "core/passes/pass.wgsl")]);
+    assert_eq!(found(MODULE, &pass), [pair("glsl", "core/passes/pass.wgsl:9")]);
 }
 
 #[test]
 fn a_required_program_that_is_absent_is_a_finding() {
     let library = Library::from_text(&[("core/leaf.wgsl", MODULE)], &[], &[]);
-    let options = Options { require: vec![Tool::Tint], path: Some(OsString::new()) };
+    let options = Options { require: vec![Tool::Tint], path: Some(OsString::new()), ..Options::default() };
     let report = run(&library, &options).unwrap();
     assert!(!report.is_clean());
     assert_eq!(report.findings[0].check, "tint");

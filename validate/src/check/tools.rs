@@ -4,9 +4,11 @@
 use crate::check::Severity;
 use std::{
     ffi::OsStr,
-    fmt, fs,
+    fmt, fs, io,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::{Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
 };
 
 /// A program.
@@ -69,10 +71,22 @@ pub(crate) struct Diagnostic {
     pub severity: Severity,
     pub message: String,
     pub line: Option<u32>,
+    /// In bytes, from 1.
+    pub column: Option<u32>,
+}
+
+impl Diagnostic {
+    /// The lint that it belongs to.
+    pub fn check(&self) -> &'static str {
+        match self.message.contains("uniform control flow") {
+            true => "uniformity",
+            false => Tool::Tint.name(),
+        }
+    }
 }
 
 fn failed(message: String) -> Vec<Diagnostic> {
-    vec![Diagnostic { severity: Severity::Error, message, line: None }]
+    vec![Diagnostic { severity: Severity::Error, message, line: None, column: None }]
 }
 
 /// Errors and warnings of Tint about a WGSL file.
@@ -113,12 +127,12 @@ fn diagnostics(text: &str) -> Vec<Diagnostic> {
             Some("warning") => Severity::Warning,
             _ => Severity::Error,
         };
-        let line = entry["range"]["start"]["line"].as_u64();
-        diagnostics.push(Diagnostic {
-            severity,
-            message: message.to_owned(),
-            line: line.and_then(|line| u32::try_from(line).ok()).filter(|&line| line > 0),
-        });
+        let start = |part: &str| {
+            let number = entry["range"]["start"][part].as_u64();
+            number.and_then(|number| u32::try_from(number).ok()).filter(|&number| number > 0)
+        };
+        let (line, column) = (start("line"), start("column"));
+        diagnostics.push(Diagnostic { severity, message: message.to_owned(), line, column });
     }
     diagnostics
 }
@@ -160,11 +174,42 @@ fn judged(program: &Path, output: Output, file: &Path) -> Result<(), String> {
     Err(format!("{name}: {}", said.trim()))
 }
 
+/// How long a program may take.
+const PATIENCE: Duration = Duration::from_secs(60);
+
 fn run(program: &Path, arguments: &[&str], content: &[u8], file: &Path) -> Result<Output, String> {
     fs::write(file, content).map_err(|error| format!("cannot write {}: {error}", file.display()))?;
-    let mut command = Command::new(program);
-    let output = command.args(arguments).arg(file).output();
-    output.map_err(|error| format!("cannot run {}: {error}", program.display()))
+    run_within(PATIENCE, program, arguments, file)
+}
+
+/// Runs a program that must end; what it says comes back as its output, errors among it.
+fn run_within(patience: Duration, program: &Path, arguments: &[&str], file: &Path) -> Result<Output, String> {
+    let said = file.with_extension("said");
+    let failed = |error: io::Error| format!("cannot run {}: {error}", program.display());
+    let log = fs::File::create(&said).map_err(failed)?;
+    let mut child = Command::new(program)
+        .args(arguments)
+        .arg(file)
+        .stdin(Stdio::null())
+        .stdout(log.try_clone().map_err(failed)?)
+        .stderr(log)
+        .spawn()
+        .map_err(failed)?;
+    let start = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().map_err(failed)? {
+            break status;
+        }
+        if start.elapsed() > patience {
+            // It may have ended meanwhile.
+            let _ = child.kill();
+            let _ = child.wait();
+            return Err(format!("{} gave no answer within {} s", program.display(), patience.as_secs()));
+        }
+        thread::sleep(Duration::from_millis(2));
+    };
+    let stdout = fs::read(&said).map_err(failed)?;
+    Ok(Output { status, stdout, stderr: Vec::new() })
 }
 
 #[cfg(test)]
@@ -184,14 +229,26 @@ mod tests {
 
     #[test]
     fn diagnostics_are_read() {
-        let text = r#"x [{"severity":"error","message":"a","range":{"start":{"line":3}}},
+        let text = r#"x [{"severity":"error","message":"a","range":{"start":{"line":3,"column":7}}},
             {"severity":"note","message":"b","range":{"start":{"line":1}}},
             {"severity":"warning","message":"c"}]"#;
         let expected = [
-            Diagnostic { severity: Severity::Error, message: "a; b".into(), line: Some(3) },
-            Diagnostic { severity: Severity::Warning, message: "c".into(), line: None },
+            Diagnostic { severity: Severity::Error, message: "a; b".into(), line: Some(3), column: Some(7) },
+            Diagnostic { severity: Severity::Warning, message: "c".into(), line: None, column: None },
         ];
         assert_eq!(diagnostics(text), expected);
         assert_eq!(diagnostics(""), []);
+    }
+
+    #[test]
+    fn a_program_that_does_not_end_is_stopped() {
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let mut programs = std::env::split_paths(&path).map(|folder| folder.join("tail"));
+        let Some(tail) = programs.find(|file| file.is_file()) else { return };
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("followed");
+        fs::write(&file, "").unwrap();
+        let error = run_within(Duration::from_millis(50), &tail, &["-f"], &file).unwrap_err();
+        assert!(error.contains("no answer"), "{error}");
     }
 }

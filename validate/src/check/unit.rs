@@ -2,15 +2,15 @@
 //! The checks of one module or one permutation of a pass.
 
 use crate::{
-    BindingKind, Composed, Definitions, EntryPoint, Library, Location, Reflection, StructLayout,
+    BindingKind, Composed, Definitions, Library, Location, Reflection, StructLayout,
     check::{
         Finding, Severity, Tool,
         backends::{self, Backend, Written},
         expected::{self, Expected, Outcome, Verdict},
-        limits, tools,
+        form, limits, origin, plain, tools,
     },
     compose::validate,
-    flat, locate,
+    locate,
 };
 use std::path::{Path, PathBuf};
 
@@ -23,16 +23,50 @@ pub(crate) enum Subject {
     Pass { name: String, permutation: String, definitions: Definitions },
 }
 
-/// What all subjects share.
-pub(crate) struct Context<'a> {
-    pub library: &'a Library,
-    pub expected: &'a [Expected],
-    pub tools: &'a [(Tool, PathBuf)],
-    pub folder: &'a Path,
+impl Subject {
+    /// The path of a module that is checked alone.
+    pub fn module(&self) -> Option<&str> {
+        match self {
+            Self::Module { path, .. } => Some(path),
+            Self::Pass { .. } => None,
+        }
+    }
+
+    /// The path of the module, or the name of the pass.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Module { path, .. } => path,
+            Self::Pass { name, .. } => name,
+        }
+    }
+
+    pub fn definitions(&self) -> &Definitions {
+        match self {
+            Self::Module { definitions, .. } | Self::Pass { definitions, .. } => definitions,
+        }
+    }
 }
 
-impl Context<'_> {
-    fn tool(&self, wanted: Tool) -> Option<&Path> {
+/// What all subjects share.
+pub(crate) struct Context {
+    pub library: Library,
+    pub expected: Vec<Expected>,
+    pub tools: Vec<(Tool, PathBuf)>,
+    pub folder: tempfile::TempDir,
+}
+
+impl Context {
+    /// Whether the shaders are somebody else's: then Airlight's own rules do not hold.
+    pub fn is_foreign(&self) -> bool {
+        self.library.foreign.is_some()
+    }
+
+    /// A temporary file of a subject.
+    pub fn file(&self, number: usize, extension: &str) -> PathBuf {
+        self.folder.path().join(format!("{number}.{extension}"))
+    }
+
+    pub fn tool(&self, wanted: Tool) -> Option<&Path> {
         self.tools.iter().find(|(tool, _)| *tool == wanted).map(|(_, path)| path.as_path())
     }
 }
@@ -43,13 +77,20 @@ pub(crate) fn check(context: &Context, subject: &Subject, number: usize) -> Vec<
         Subject::Module { path, definitions } => {
             (path.as_str(), None, context.library.compose_module(path, definitions))
         }
+        Subject::Pass { name, .. } if context.library.is_plain(name) => {
+            return plain::check(context, name, number);
+        }
         Subject::Pass { name, permutation, definitions } => {
             (name.as_str(), Some(permutation.as_str()), context.library.compose(name, definitions))
         }
     };
     let mut findings = match composed {
         Ok(composed) => match permutation {
-            Some(permutation) => check_pass(context, composed, permutation, number),
+            // A file of others that no composer reads and that has no path is a module as well.
+            Some(_) if context.is_foreign() && composed.module.entry_points.is_empty() => {
+                check_module(context, composed, number)
+            }
+            Some(permutation) => check_pass(context, &composed, permutation, number),
             None => check_module(context, composed, number),
         },
         Err(error) => vec![Finding::of("compose", &error)],
@@ -64,7 +105,7 @@ pub(crate) fn check(context: &Context, subject: &Subject, number: usize) -> Vec<
 /// A module has no entry point; an empty one lets the back ends write its functions.
 fn check_module(context: &Context, mut composed: Composed, number: usize) -> Vec<Finding> {
     let mut findings = Vec::new();
-    check_flat(context, &composed, &composed.reflect(), number, &mut findings);
+    form::check(context, &composed, &composed.reflect(), number, &mut findings);
     composed.module.entry_points.push(naga::EntryPoint {
         name: "airlight_check".to_owned(),
         stage: naga::ShaderStage::Compute,
@@ -96,31 +137,54 @@ fn check_module(context: &Context, mut composed: Composed, number: usize) -> Vec
     findings
 }
 
-fn check_pass(context: &Context, composed: Composed, permutation: &str, number: usize) -> Vec<Finding> {
+fn check_pass(context: &Context, composed: &Composed, permutation: &str, number: usize) -> Vec<Finding> {
     let mut findings = Vec::new();
     let reflection = composed.reflect();
     if reflection.entry_points.is_empty() {
         let message = "a pass needs an entry point".to_owned();
-        findings.push(about(&composed, Severity::Error, "compose", message));
+        findings.push(about(composed, Severity::Error, "compose", message));
     }
-    // Only a permutation that says so in its name may want more than every device has.
-    let severity = if permutation == "default" { Severity::Error } else { Severity::Warning };
-    for excess in limits::excesses(&reflection) {
-        findings.push(about(&composed, severity, "limits", excess.to_string()));
-    }
-    for (name, message) in limits::violations(&reflection) {
-        let source = context.library.text(&composed.file).unwrap_or_default();
-        let mut finding = about(&composed, Severity::Error, "formats", message);
-        finding.line = locate::line_with(source, &name, "var");
-        findings.push(finding);
-    }
-    for layout in uniform_structs(&reflection) {
+    let place = |name: &str| origin::of_declaration(&context.library, composed, name);
+    check_limits(&reflection, permutation, place, &mut findings);
+    // How a struct is padded is a rule of Airlight's.
+    for layout in uniform_structs(&reflection).into_iter().filter(|_| !context.is_foreign()) {
         if let Some(message) = limits::implicit_padding(layout) {
-            findings.push(about(&composed, Severity::Error, "padding", message));
+            findings.push(Finding::new(Severity::Error, place(&layout.name), "padding", message));
         }
     }
-    check_flat(context, &composed, &reflection, number, &mut findings);
+    form::check(context, composed, &reflection, number, &mut findings);
+    check_backends(context, composed, &reflection, permutation, number, &mut findings);
+    findings
+}
 
+/// Limits and formats; `place` says where a name is declared.
+pub(super) fn check_limits(
+    reflection: &Reflection,
+    permutation: &str,
+    place: impl Fn(&str) -> Location,
+    findings: &mut Vec<Finding>,
+) {
+    // Only a permutation that says so in its name may want more than every device has.
+    let severity = if permutation == "default" { Severity::Error } else { Severity::Warning };
+    for excess in limits::excesses(reflection) {
+        let location = place(&excess.entry_point);
+        findings.push(Finding::new(severity, location, "limits", excess.to_string()));
+    }
+    for (name, message) in limits::violations(reflection) {
+        findings.push(Finding::new(Severity::Error, place(&name), "formats", message));
+    }
+}
+
+/// Every entry point through every back end, and what the list of expected failures says of that.
+pub(super) fn check_backends(
+    context: &Context,
+    composed: &Composed,
+    reflection: &Reflection,
+    permutation: &str,
+    number: usize,
+    findings: &mut Vec<Finding>,
+) {
+    let place = |name: &str| origin::of_declaration(&context.library, composed, name);
     let mut outcomes = Vec::new();
     for (index, entry) in composed.module.entry_points.iter().enumerate() {
         let suffix = match entry.stage {
@@ -129,17 +193,20 @@ fn check_pass(context: &Context, composed: Composed, permutation: &str, number: 
             _ => "comp",
         };
         for backend in Backend::ALL {
-            let result = backends::write(backend, &composed, &reflection, index);
+            let result = backends::write(backend, composed, reflection, index);
             let result = result.and_then(|written| compile(context, backend, &written, suffix, number));
             let entry_point = entry.name.clone();
             outcomes.push(Outcome { entry_point, backend, error: result.err() });
         }
     }
-    for verdict in expected::judge(context.expected, &composed.pass, permutation, &outcomes) {
+    for verdict in expected::judge(&context.expected, &composed.pass, permutation, &outcomes) {
         findings.push(match verdict {
             Verdict::Unexpected { entry_point, backend, message } => {
+                // WebGPU never takes GLSL; only a fallback to OpenGL does.
+                let is_minor = context.is_foreign() && backend == Backend::Glsl;
+                let severity = if is_minor { Severity::Warning } else { Severity::Error };
                 let message = format!("`{entry_point}`: {message}");
-                about(&composed, Severity::Error, backend.name(), message)
+                Finding::new(severity, place(&entry_point), backend.name(), message)
             }
             Verdict::Passed(entry) => {
                 let message = format!(
@@ -154,7 +221,6 @@ fn check_pass(context: &Context, composed: Composed, permutation: &str, number: 
             }
         });
     }
-    findings
 }
 
 /// A real compiler or validator of the language, where there is one on the path.
@@ -167,13 +233,11 @@ fn compile(
 ) -> Result<(), String> {
     match (backend, written) {
         (Backend::Spirv, Written::Words(words)) => match context.tool(Tool::SpirvVal) {
-            Some(program) => tools::spirv_val(program, words, &context.folder.join(format!("{number}.spv"))),
+            Some(program) => tools::spirv_val(program, words, &context.file(number, "spv")),
             None => Ok(()),
         },
         (Backend::Glsl, Written::Text(text)) => match context.tool(Tool::Glslang) {
-            Some(program) => {
-                tools::glslang(program, text, &context.folder.join(format!("{number}.{suffix}")))
-            }
+            Some(program) => tools::glslang(program, text, &context.file(number, suffix)),
             None => Ok(()),
         },
         (Backend::Hlsl, Written::Named { text, entry_point }) => match context.tool(Tool::Dxc) {
@@ -192,130 +256,8 @@ fn compile(
     }
 }
 
-/// The flat form parses, validates, has the same interface, and passes the other compiler.
-fn check_flat(
-    context: &Context,
-    composed: &Composed,
-    reflection: &Reflection,
-    number: usize,
-    findings: &mut Vec<Finding>,
-) {
-    let text = match flat::write(composed) {
-        Ok(text) => text,
-        Err(error) => return findings.push(Finding::of("flat", &error)),
-    };
-    let place = |line: Option<u32>| origin(context.library, composed, &text, line);
-    match naga::front::wgsl::parse_str(&text) {
-        Err(error) => {
-            let line = error.location(&text).map(|location| location.line_number);
-            let message = quoted(error.message(), &text, line);
-            findings.push(Finding::new(Severity::Error, place(line), "flat", message));
-        }
-        Ok(module) => match validate(&module) {
-            Err(error) => {
-                let line = error.location(&text).map(|location| location.line_number);
-                let message = quoted(&locate::chain(error.as_inner()), &text, line);
-                findings.push(Finding::new(Severity::Error, place(line), "flat", message));
-            }
-            Ok(info) => {
-                let again = Reflection::new(&module, &info);
-                if let Some(message) = difference(reflection, &again) {
-                    findings.push(about(composed, Severity::Error, "flat", message));
-                }
-            }
-        },
-    }
-    if let Some(program) = context.tool(Tool::Tint) {
-        let path = context.folder.join(format!("{number}.wgsl"));
-        // Tint wants an entry point.
-        let entry_point = match reflection.entry_points.is_empty() {
-            true => "\n@compute @workgroup_size(1)\nfn airlight_check() {}\n",
-            false => "",
-        };
-        for diagnostic in tools::tint(program, &format!("{text}{entry_point}"), &path) {
-            let message = quoted(&diagnostic.message, &text, diagnostic.line);
-            let location = place(diagnostic.line);
-            findings.push(Finding::new(diagnostic.severity, location, Tool::Tint.name(), message));
-        }
-    }
-}
-
-fn about(composed: &Composed, severity: Severity, check: &str, message: String) -> Finding {
+pub(super) fn about(composed: &Composed, severity: Severity, check: &str, message: String) -> Finding {
     Finding::new(severity, Location::file(&composed.file), check, message)
-}
-
-/// The message with the line of the flat file that it is about, which no one has open.
-fn quoted(message: &str, text: &str, line: Option<u32>) -> String {
-    let code = line.and_then(|line| text.lines().nth(line.saturating_sub(1) as usize));
-    match code {
-        Some(code) => format!("{message}; in `{}`", code.trim()),
-        None => message.to_owned(),
-    }
-}
-
-/// The own file and line of the function around a line of the flat file.
-fn origin(library: &Library, composed: &Composed, text: &str, line: Option<u32>) -> Location {
-    let unknown = Location::file(&composed.file);
-    let Some(line) = line else { return unknown };
-    let above: Vec<&str> = text.lines().take(line as usize).collect();
-    let name = above.iter().rev().find_map(|line| {
-        let rest = line.split_once("fn ")?.1;
-        line.trim_start().starts_with(['f', '@']).then(|| rest.split('(').next())?
-    });
-    let Some(name) = name else { return unknown };
-    let imports = match library.pass(&composed.pass) {
-        Ok(pass) => pass.imports.clone(),
-        Err(_) => vec![composed.pass.clone()],
-    };
-    let modules = library.closure(&imports);
-    let own = library.text(&composed.file).map(|source| (composed.file.as_str(), "", source));
-    let modules = modules.iter().map(|module| {
-        let short = module.path.rsplit("::").next().unwrap_or_default();
-        (module.file.as_str(), short, module.source.as_str())
-    });
-    for (file, module, source) in own.into_iter().chain(modules) {
-        // An ambiguous name has its module's before it.
-        let short = name.strip_prefix(module).and_then(|name| name.strip_prefix('_'));
-        for candidate in [Some(name), short].into_iter().flatten() {
-            let declaration = format!("fn {candidate}(");
-            if let Some(index) = source.lines().position(|line| line.contains(&declaration)) {
-                return Location::line(file, index as u32 + 1);
-            }
-        }
-    }
-    unknown
-}
-
-/// What the flat form lost, if anything.
-fn difference(before: &Reflection, after: &Reflection) -> Option<String> {
-    for binding in &before.bindings {
-        if !after.bindings.contains(binding) {
-            return Some(format!("the flat form does not keep the binding {binding:?}"));
-        }
-    }
-    for layout in &before.structs {
-        if !after.structs.contains(layout) {
-            let name = &layout.name;
-            return Some(format!(
-                "the flat form does not keep the names or the layout of struct `{name}`: use \
-                 padding members instead of `@size` and `@align`, and no name that ends in a digit"
-            ));
-        }
-    }
-    // Arguments are told apart by their locations; the writer numbers names that come twice.
-    let nameless = |entry: &EntryPoint| {
-        let mut entry = entry.clone();
-        entry.inputs.iter_mut().for_each(|input| input.name.clear());
-        entry
-    };
-    let kept: Vec<EntryPoint> = after.entry_points.iter().map(nameless).collect();
-    for entry in &before.entry_points {
-        if !kept.contains(&nameless(entry)) {
-            let name = &entry.name;
-            return Some(format!("the flat form does not keep the entry point `{name}` as it is"));
-        }
-    }
-    None
 }
 
 /// Structs of uniform buffers and those inside them.

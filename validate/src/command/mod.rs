@@ -4,6 +4,7 @@
 pub(crate) mod abi;
 pub(crate) mod check;
 pub(crate) mod docs;
+pub(crate) mod explain;
 pub(crate) mod flat;
 pub(crate) mod flatten;
 pub(crate) mod list;
