@@ -19,7 +19,10 @@ fn wgsl() -> std::path::PathBuf {
 fn the_folder_is_fresh() {
     let library = Library::from_directory(&wgsl()).unwrap();
     let files = flat::render(&library).unwrap();
-    assert_eq!(files, flat::render(&Library::builtin()).unwrap(), "the folder is not what is built in");
+    assert!(
+        files == flat::render(&Library::builtin()).unwrap(),
+        "it matters where the shaders are read from"
+    );
     let nothing = |_: &Path, _: &str| -> std::io::Result<()> { unreachable!("nothing is written") };
     let stale = flat::sync(&wgsl().join("flat"), &files, flat::Kept::Compared, nothing);
     assert_eq!(stale, Ok(()), "run `airlight-validate flatten`");
@@ -88,11 +91,11 @@ fn flat_and_composed_passes_have_equal_interfaces_and_functions() {
         if Reflection::new(&module, &info) != composed.reflect() {
             wrong.push(format!("{}: another interface than the composed pass", flat.file));
         }
+        // The composer keeps functions that nothing calls; what is called is there, or it would not validate.
         let (own, others) = (functions(&module), functions(&composed.module));
-        if own != others {
-            let only: Vec<_> = own.iter().filter(|pair| others.get(pair.0) != Some(pair.1)).collect();
-            let missing: Vec<_> = others.iter().filter(|pair| own.get(pair.0) != Some(pair.1)).collect();
-            wrong.push(format!("{}: functions {only:?} instead of {missing:?}", flat.file));
+        let different: Vec<_> = own.iter().filter(|pair| others.get(pair.0) != Some(pair.1)).collect();
+        if !different.is_empty() {
+            wrong.push(format!("{}: functions unlike the composed ones: {different:?}", flat.file));
         }
         wrong
     })

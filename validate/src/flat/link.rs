@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 pub(super) struct Linked {
     /// `enable` and the like, which stand first.
     pub directives: String,
-    /// Of each module that something is used of, in the order of the library: its path and items.
+    /// Of each module that something is used of, after those that it imports: its path and items.
     pub modules: Vec<(String, String)>,
     /// The items of the pass.
     pub pass: String,
@@ -52,7 +52,7 @@ pub(super) fn link(
     pass: &PassSource,
     mut definitions: HashMap<String, ShaderDefValue>,
 ) -> Result<Linked, Failure> {
-    let modules = library.closure(&pass.imports);
+    let modules = ordered(library.closure(&pass.imports));
     definitions.extend(source::own_definitions(&pass.source));
     for module in &modules {
         for (name, value) in source::own_definitions(&module.source) {
@@ -63,6 +63,19 @@ pub(super) fn link(
     linker.add(PASS, &pass.file, &pass.source)?;
     linker.follow()?;
     Ok(linker.write())
+}
+
+/// Each module after those it imports, and otherwise by path: whatever the order of the library.
+fn ordered(mut modules: Vec<&ModuleSource>) -> Vec<&ModuleSource> {
+    modules.sort_by(|a, b| a.path.cmp(&b.path));
+    let mut ordered: Vec<&ModuleSource> = Vec::with_capacity(modules.len());
+    while !modules.is_empty() {
+        let is_open = |path: &String| modules.iter().any(|module| module.path == *path);
+        // A circle of imports does not compose; it must end here all the same.
+        let next = modules.iter().position(|module| !module.imports.iter().any(is_open)).unwrap_or(0);
+        ordered.push(modules.remove(next));
+    }
+    ordered
 }
 
 struct Linker<'a> {

@@ -65,7 +65,7 @@ fn title(library: &Library, pass: &PassSource, permutation: &Permutation) -> Str
     if let Some(licence) = licence {
         let _ = writeln!(text, "{licence}");
     }
-    let is_airlight = library.modules().iter().all(|module| module.path.starts_with("airlight::"));
+    let is_airlight = library.modules().iter().any(|module| module.path.starts_with("airlight::"));
     let maker = if is_airlight { concat!("Airlight ", env!("CARGO_PKG_VERSION"), ": ") } else { "" };
     let definitions = match permutation.definitions.is_empty() {
         true => String::new(),

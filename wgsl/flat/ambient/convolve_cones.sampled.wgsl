@@ -15,6 +15,22 @@
 // binding radiance_sampler: linear within and between levels, repeating in u; with SAMPLED only.
 // binding cones: out, rgba16float, 8 layers of side texels squared, as ambient/cone_light reads them.
 
+// ---- airlight::ambient::environment ----
+// summary: Environment maps: directions and solid angles of the texels of a latitude-longitude picture.
+// source: the unit sphere; a zone between two elevations has 2 pi times the difference of their sines (Archimedes).
+
+/// Half a turn, radians.
+const HALF_TURN: f32 = 3.14159265;
+
+/// Coordinates 0..1 in the map of a unit vector; to be read with a sampler that repeats in the first.
+fn environment_coordinates(direction: vec3<f32>) -> vec2<f32> {
+    // The angle of the null vector is undefined: at the poles any column will do.
+    let level = select(direction.xz, vec2<f32>(0.0, -1.0), all(direction.xz == vec2<f32>(0.0)));
+    let right_of_middle = atan2(level.x, -level.y);
+    let down = atan2(max(length(direction.xz), 1e-20), direction.y);
+    return vec2<f32>(0.5 + 0.5 * right_of_middle / HALF_TURN, down / HALF_TURN);
+}
+
 // ---- airlight::ambient::octahedral ----
 // summary: Directions as texels of a square: an octahedron unfolded about the y axis, whose edges are middles of texels.
 // source: Engelhardt and Dachsbacher, "Octahedron environment maps" (2008).
@@ -49,22 +65,6 @@ const CONE_ANGLE_STEP: f32 = 0.19634954;
 /// The half angle of a layer's cone, radians.
 fn cone_layer_angle(layer: u32) -> f32 {
     return CONE_ANGLE_STEP * f32(layer + 1u);
-}
-
-// ---- airlight::ambient::environment ----
-// summary: Environment maps: directions and solid angles of the texels of a latitude-longitude picture.
-// source: the unit sphere; a zone between two elevations has 2 pi times the difference of their sines (Archimedes).
-
-/// Half a turn, radians.
-const HALF_TURN: f32 = 3.14159265;
-
-/// Coordinates 0..1 in the map of a unit vector; to be read with a sampler that repeats in the first.
-fn environment_coordinates(direction: vec3<f32>) -> vec2<f32> {
-    // The angle of the null vector is undefined: at the poles any column will do.
-    let level = select(direction.xz, vec2<f32>(0.0, -1.0), all(direction.xz == vec2<f32>(0.0)));
-    let right_of_middle = atan2(level.x, -level.y);
-    let down = atan2(max(length(direction.xz), 1e-20), direction.y);
-    return vec2<f32>(0.5 + 0.5 * right_of_middle / HALF_TURN, down / HALF_TURN);
 }
 
 // ---- ambient/convolve_cones ----

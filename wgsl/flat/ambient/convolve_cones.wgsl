@@ -13,28 +13,6 @@
 // binding radiance: linear RGB, finite, latitude-longitude as in ambient/environment: rgba32float, with SAMPLED rgba16float with levels, each half the one before.
 // binding cones: out, rgba16float, 8 layers of side texels squared, as ambient/cone_light reads them.
 
-// ---- airlight::ambient::octahedral ----
-// summary: Directions as texels of a square: an octahedron unfolded about the y axis, whose edges are middles of texels.
-// source: Engelhardt and Dachsbacher, "Octahedron environment maps" (2008).
-
-/// -1 for negative numbers, else 1.
-fn signs(x: vec2<f32>) -> vec2<f32> {
-    return select(vec2<f32>(-1.0), vec2<f32>(1.0), x >= vec2<f32>(0.0));
-}
-
-/// The unit vector of a place in the square, -1..1.
-fn octahedral_direction(place: vec2<f32>) -> vec3<f32> {
-    let height = 1.0 - abs(place.x) - abs(place.y);
-    let below = (1.0 - abs(place.yx)) * signs(place);
-    let flat_part = select(below, place, height >= 0.0);
-    return normalize(vec3<f32>(flat_part.x, height, flat_part.y));
-}
-
-/// The unit vector of the middle of texel 0..side-1 of the map.
-fn octahedral_texel_direction(texel: vec2<u32>, side: u32) -> vec3<f32> {
-    return octahedral_direction(2.0 * vec2<f32>(texel) / f32(side - 1u) - 1.0);
-}
-
 // ---- airlight::ambient::environment ----
 // summary: Environment maps: directions and solid angles of the texels of a latitude-longitude picture.
 // source: the unit sphere; a zone between two elevations has 2 pi times the difference of their sines (Archimedes).
@@ -55,6 +33,28 @@ fn environment_direction(coordinates: vec2<f32>) -> vec3<f32> {
 fn zone_height(begin: f32, end: f32) -> f32 {
     // The difference of two cosines, without its cancellation.
     return 2.0 * sin(0.5 * HALF_TURN * (begin + end)) * sin(0.5 * HALF_TURN * (end - begin));
+}
+
+// ---- airlight::ambient::octahedral ----
+// summary: Directions as texels of a square: an octahedron unfolded about the y axis, whose edges are middles of texels.
+// source: Engelhardt and Dachsbacher, "Octahedron environment maps" (2008).
+
+/// -1 for negative numbers, else 1.
+fn signs(x: vec2<f32>) -> vec2<f32> {
+    return select(vec2<f32>(-1.0), vec2<f32>(1.0), x >= vec2<f32>(0.0));
+}
+
+/// The unit vector of a place in the square, -1..1.
+fn octahedral_direction(place: vec2<f32>) -> vec3<f32> {
+    let height = 1.0 - abs(place.x) - abs(place.y);
+    let below = (1.0 - abs(place.yx)) * signs(place);
+    let flat_part = select(below, place, height >= 0.0);
+    return normalize(vec3<f32>(flat_part.x, height, flat_part.y));
+}
+
+/// The unit vector of the middle of texel 0..side-1 of the map.
+fn octahedral_texel_direction(texel: vec2<u32>, side: u32) -> vec3<f32> {
+    return octahedral_direction(2.0 * vec2<f32>(texel) / f32(side - 1u) - 1.0);
 }
 
 // ---- ambient/convolve_cones ----

@@ -58,25 +58,6 @@ fn mean_direction(sum: BentSum) -> vec3<f32> {
     return sum.direction / max(sum.visible, 1e-20);
 }
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
-}
-
 // ---- airlight::ambient::occluders ----
 // summary: Whether what is seen at a pixel is in a surface point's way, and how much.
 // source: thesis Eq. 3.4 and Listing 3.1; Bavoil et al., "Image-space horizon-based ambient occlusion" (2008); Therrien et al., "Screen space indirect lighting with visibility bitmask" (2023).
@@ -197,6 +178,25 @@ fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
 fn towards_viewer(camera: Camera, point: vec3<f32>) -> vec3<f32> {
     let parallel = camera.world_from_clip[2].xyz * (camera.near_depth - camera.far_depth);
     return select(camera.eye - point, parallel, camera.projection == ORTHOGRAPHIC);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::ambient::seen_surface ----

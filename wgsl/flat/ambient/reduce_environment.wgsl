@@ -7,6 +7,20 @@
 // binding environment: radiance, linear RGB, latitude-longitude as in ambient/environment; any float format.
 // binding reduced: out, rgba32float, with HALF rgba16float: radiance, and 1.
 
+// ---- airlight::ambient::environment ----
+// summary: Environment maps: directions and solid angles of the texels of a latitude-longitude picture.
+// source: the unit sphere; a zone between two elevations has 2 pi times the difference of their sines (Archimedes).
+
+/// Half a turn, radians.
+const HALF_TURN: f32 = 3.14159265;
+
+/// Difference of the sines of elevation between two heights of the map, 0..1 from the top, `begin` above `end`: over
+/// a column of width w (0..1) the solid angle is 2 pi w times this.
+fn zone_height(begin: f32, end: f32) -> f32 {
+    // The difference of two cosines, without its cancellation.
+    return 2.0 * sin(0.5 * HALF_TURN * (begin + end)) * sin(0.5 * HALF_TURN * (end - begin));
+}
+
 // ---- airlight::core::finite ----
 // summary: Replaces NaN and infinities in data that comes from outside.
 // source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
@@ -24,20 +38,6 @@ fn finite_or(x: f32, fallback: f32) -> f32 {
 /// Like `finite_or`, each component by itself.
 fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
     return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
-}
-
-// ---- airlight::ambient::environment ----
-// summary: Environment maps: directions and solid angles of the texels of a latitude-longitude picture.
-// source: the unit sphere; a zone between two elevations has 2 pi times the difference of their sines (Archimedes).
-
-/// Half a turn, radians.
-const HALF_TURN: f32 = 3.14159265;
-
-/// Difference of the sines of elevation between two heights of the map, 0..1 from the top, `begin` above `end`: over
-/// a column of width w (0..1) the solid angle is 2 pi w times this.
-fn zone_height(begin: f32, end: f32) -> f32 {
-    // The difference of two cosines, without its cancellation.
-    return 2.0 * sin(0.5 * HALF_TURN * (begin + end)) * sin(0.5 * HALF_TURN * (end - begin));
 }
 
 // ---- ambient/reduce_environment ----

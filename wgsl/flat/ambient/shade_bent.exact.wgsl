@@ -39,6 +39,43 @@ fn bent_normal(mean: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     return select(normal, mean / max(size, 1e-20), size > 1e-6);
 }
 
+// ---- airlight::core::camera ----
+// summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
+// source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
+
+/// Orthographic projection: view rays are parallel and leave the near plane.
+const ORTHOGRAPHIC: u32 = 1u;
+
+/// A camera, as an engine hands it over. 160 bytes.
+struct Camera {
+    /// View-projection matrix, world to clip.
+    clip_from_world: mat4x4<f32>,
+    /// Its inverse, clip to world.
+    world_from_clip: mat4x4<f32>,
+    /// Position of the eye in the world, metres; unused by an orthographic camera.
+    eye: vec3<f32>,
+    /// Clip depth of the near plane: 0 forward, 1 reversed.
+    near_depth: f32,
+    /// Width and height of the picture in pixels.
+    viewport: vec2<f32>,
+    /// Clip depth of the far plane: 1 forward, 0 reversed.
+    far_depth: f32,
+    /// PERSPECTIVE or ORTHOGRAPHIC.
+    projection: u32,
+}
+
+/// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
+fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+/// Vector from `point`, metres in the world, TOWARDS the viewer, of any length: to the eye, or against the parallel
+/// rays of an orthographic camera.
+fn towards_viewer(camera: Camera, point: vec3<f32>) -> vec3<f32> {
+    let parallel = camera.world_from_clip[2].xyz * (camera.near_depth - camera.far_depth);
+    return select(camera.eye - point, parallel, camera.projection == ORTHOGRAPHIC);
+}
+
 // ---- airlight::core::finite ----
 // summary: Replaces NaN and infinities in data that comes from outside.
 // source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
@@ -109,43 +146,6 @@ fn cone_radiance(cones: texture_2d_array<f32>, cone_sampler: sampler, direction:
     let narrow = textureSampleLevel(cones, cone_sampler, coordinates, begin, 0.0).rgb;
     let wide = textureSampleLevel(cones, cone_sampler, coordinates, begin + 1u, 0.0).rgb;
     return mix(narrow, wide, layer - f32(begin));
-}
-
-// ---- airlight::core::camera ----
-// summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
-// source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
-
-/// Orthographic projection: view rays are parallel and leave the near plane.
-const ORTHOGRAPHIC: u32 = 1u;
-
-/// A camera, as an engine hands it over. 160 bytes.
-struct Camera {
-    /// View-projection matrix, world to clip.
-    clip_from_world: mat4x4<f32>,
-    /// Its inverse, clip to world.
-    world_from_clip: mat4x4<f32>,
-    /// Position of the eye in the world, metres; unused by an orthographic camera.
-    eye: vec3<f32>,
-    /// Clip depth of the near plane: 0 forward, 1 reversed.
-    near_depth: f32,
-    /// Width and height of the picture in pixels.
-    viewport: vec2<f32>,
-    /// Clip depth of the far plane: 1 forward, 0 reversed.
-    far_depth: f32,
-    /// PERSPECTIVE or ORTHOGRAPHIC.
-    projection: u32,
-}
-
-/// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
-fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
-    return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
-}
-
-/// Vector from `point`, metres in the world, TOWARDS the viewer, of any length: to the eye, or against the parallel
-/// rays of an orthographic camera.
-fn towards_viewer(camera: Camera, point: vec3<f32>) -> vec3<f32> {
-    let parallel = camera.world_from_clip[2].xyz * (camera.near_depth - camera.far_depth);
-    return select(camera.eye - point, parallel, camera.projection == ORTHOGRAPHIC);
 }
 
 // ---- airlight::ambient::seen_surface ----

@@ -50,25 +50,6 @@ fn mean_from_difference(difference: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     return mean / max(length(mean), 1.0);
 }
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -94,6 +75,25 @@ struct Camera {
 /// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
 fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::ambient::seen_surface ----

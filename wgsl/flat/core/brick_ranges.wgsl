@@ -6,6 +6,18 @@
 // binding volume: the volume, any float format.
 // binding ranges: out, least and greatest value of each brick and one voxel around it, a texel a brick.
 
+// ---- airlight::core::bricks ----
+// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
+// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
+
+/// Voxels along a brick.
+const BRICK: u32 = 8u;
+
+/// Bricks along each axis of a volume of `size` voxels.
+fn brick_count(size: vec3<u32>) -> vec3<u32> {
+    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
+}
+
 // ---- airlight::core::finite ----
 // summary: Replaces NaN and infinities in data that comes from outside.
 // source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
@@ -18,18 +30,6 @@ fn is_finite(x: f32) -> bool {
 /// `x` where it is finite, `fallback` elsewhere.
 fn finite_or(x: f32, fallback: f32) -> f32 {
     return select(fallback, x, is_finite(x));
-}
-
-// ---- airlight::core::bricks ----
-// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
-// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
-
-/// Voxels along a brick.
-const BRICK: u32 = 8u;
-
-/// Bricks along each axis of a volume of `size` voxels.
-fn brick_count(size: vec3<u32>) -> vec3<u32> {
-    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
 }
 
 // ---- core/brick_ranges ----

@@ -13,25 +13,6 @@
 // binding light_texture: linear RGB 0..1 over the whole shadow map of a directional light or a spot, any float format that filters; with LIGHT_TEXTURE only.
 // binding light_sampler: linear, clamped to the edge; with LIGHT_TEXTURE only.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -86,6 +67,25 @@ fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
 fn towards_viewer(camera: Camera, point: vec3<f32>) -> vec3<f32> {
     let parallel = camera.world_from_clip[2].xyz * (camera.near_depth - camera.far_depth);
     return select(camera.eye - point, parallel, camera.projection == ORTHOGRAPHIC);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::core::light ----

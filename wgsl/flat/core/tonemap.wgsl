@@ -6,6 +6,24 @@
 // binding radiance: linear RGB, any float format.
 // binding picture: sRGB-encoded, rgba8unorm.
 
+// ---- airlight::core::color ----
+// summary: Luminance, a filmic tone curve, and the sRGB transfer function.
+// source: IEC 61966-2-1 (sRGB); tone curve: K. Narkowicz, "ACES filmic tone mapping curve" (2015).
+
+/// Scene-linear radiance, any non-negative value, to display-linear 0..1.
+fn tone_curve(color: vec3<f32>) -> vec3<f32> {
+    // Beyond 1e4 the curve is 1 in f32, and squares of larger numbers would overflow.
+    let x = clamp(color, vec3<f32>(0.0), vec3<f32>(1e4));
+    return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), vec3<f32>(0.0), vec3<f32>(1.0));
+}
+
+/// Display-linear 0..1 to sRGB-encoded 0..1.
+fn srgb_from_linear(color: vec3<f32>) -> vec3<f32> {
+    let x = clamp(color, vec3<f32>(0.0), vec3<f32>(1.0));
+    let curve = 1.055 * pow(max(x, vec3<f32>(0.0031308)), vec3<f32>(1.0 / 2.4)) - 0.055;
+    return select(curve, 12.92 * x, x <= vec3<f32>(0.0031308));
+}
+
 // ---- airlight::core::finite ----
 // summary: Replaces NaN and infinities in data that comes from outside.
 // source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
@@ -23,24 +41,6 @@ fn finite_or(x: f32, fallback: f32) -> f32 {
 /// Like `finite_or`, each component by itself.
 fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
     return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
-}
-
-// ---- airlight::core::color ----
-// summary: Luminance, a filmic tone curve, and the sRGB transfer function.
-// source: IEC 61966-2-1 (sRGB); tone curve: K. Narkowicz, "ACES filmic tone mapping curve" (2015).
-
-/// Scene-linear radiance, any non-negative value, to display-linear 0..1.
-fn tone_curve(color: vec3<f32>) -> vec3<f32> {
-    // Beyond 1e4 the curve is 1 in f32, and squares of larger numbers would overflow.
-    let x = clamp(color, vec3<f32>(0.0), vec3<f32>(1e4));
-    return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), vec3<f32>(0.0), vec3<f32>(1.0));
-}
-
-/// Display-linear 0..1 to sRGB-encoded 0..1.
-fn srgb_from_linear(color: vec3<f32>) -> vec3<f32> {
-    let x = clamp(color, vec3<f32>(0.0), vec3<f32>(1.0));
-    let curve = 1.055 * pow(max(x, vec3<f32>(0.0031308)), vec3<f32>(1.0 / 2.4)) - 0.055;
-    return select(curve, 12.92 * x, x <= vec3<f32>(0.0031308));
 }
 
 // ---- core/tonemap ----

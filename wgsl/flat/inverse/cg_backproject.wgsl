@@ -23,6 +23,20 @@ fn triangle_weights(unit: vec3<f32>, voxel: vec3<u32>, size: vec3<u32>) -> vec3<
     return max(vec3<f32>(1.0) - abs(place - vec3<f32>(voxel)), vec3<f32>(0.0));
 }
 
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+/// The same number in all channels.
+fn all_channels(value: f32) -> vec3<f32> {
+    return vec3<f32>(value);
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -267,20 +281,6 @@ fn pixels_of_slice(view: SliceView, support: Support, slice: u32) -> vec4<i32> {
         vec4<i32>(0, 0, i32(view.width) - 1, i32(view.height) - 1),
         nearest <= 1e-6
     );
-}
-
-// ---- airlight::inverse::channels ----
-// summary: One number or three a voxel and a pixel.
-// source: none; arithmetic of one and of three is the same.
-
-/// The channels of a texel.
-fn channels_of(texel: vec4<f32>) -> vec3<f32> {
-    return texel.rgb;
-}
-
-/// The same number in all channels.
-fn all_channels(value: f32) -> vec3<f32> {
-    return vec3<f32>(value);
 }
 
 // ---- inverse/cg_backproject ----

@@ -9,17 +9,6 @@
 // binding volume: what the light alone makes the volume scatter.
 // binding sums: in and out, numbers a voxel, x fastest.
 
-// ---- airlight::inverse::slice_steps ----
-// summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
-// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
-
-/// Voxels of what is solved for. 16 bytes.
-struct VoxelGrid {
-    /// Along x, y and z, each from 1 up.
-    size: vec3<u32>,
-    reserved_a: u32,
-}
-
 // ---- airlight::inverse::light_numbers ----
 // summary: Which of the lights that are solved for is meant, and where its numbers lie.
 // source: thesis 7.4.3: pictures are a product with the light that comes from each part of the surroundings.
@@ -35,6 +24,17 @@ struct LightNumber {
     count: u32,
     /// Groups that each light has sums of.
     groups: u32,
+    reserved_a: u32,
+}
+
+// ---- airlight::inverse::slice_steps ----
+// summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
+// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
+
+/// Voxels of what is solved for. 16 bytes.
+struct VoxelGrid {
+    /// Along x, y and z, each from 1 up.
+    size: vec3<u32>,
     reserved_a: u32,
 }
 

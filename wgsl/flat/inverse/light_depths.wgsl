@@ -29,6 +29,25 @@ fn triangle_field(field: texture_3d<f32>, unit: vec3<f32>) -> vec4<f32> {
     return mix(mix(a, b, part.y), mix(c, d, part.y), part.z);
 }
 
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+/// The texel of channels.
+fn texel_of(value: vec3<f32>) -> vec4<f32> {
+    return vec4<f32>(value, 1.0);
+}
+
+/// The same number in all channels.
+fn all_channels(value: f32) -> vec3<f32> {
+    return vec3<f32>(value);
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -93,25 +112,6 @@ fn slice_ray(view: SliceView, pixel: vec2<f32>) -> SliceRay {
     let direction = view.direction + pixel.x * view.direction_right + pixel.y * view.direction_down;
     let metres = direction.x * view.edge_x + direction.y * view.edge_y + direction.z * view.edge_z;
     return SliceRay(origin, direction, length(metres));
-}
-
-// ---- airlight::inverse::channels ----
-// summary: One number or three a voxel and a pixel.
-// source: none; arithmetic of one and of three is the same.
-
-/// The channels of a texel.
-fn channels_of(texel: vec4<f32>) -> vec3<f32> {
-    return texel.rgb;
-}
-
-/// The texel of channels.
-fn texel_of(value: vec3<f32>) -> vec4<f32> {
-    return vec4<f32>(value, 1.0);
-}
-
-/// The same number in all channels.
-fn all_channels(value: f32) -> vec3<f32> {
-    return vec3<f32>(value);
 }
 
 // ---- airlight::inverse::light_layers ----

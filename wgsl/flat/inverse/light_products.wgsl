@@ -10,17 +10,6 @@
 // binding sums: of groups, by channel, one light after the other.
 // binding products: in and out, numbers a light, to which is added.
 
-// ---- airlight::inverse::slice_steps ----
-// summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
-// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
-
-/// Voxels of what is solved for. 16 bytes.
-struct VoxelGrid {
-    /// Along x, y and z, each from 1 up.
-    size: vec3<u32>,
-    reserved_a: u32,
-}
-
 // ---- airlight::inverse::group_sum ----
 // summary: The sum over a group of 128 threads, always added up in the same order.
 // source: none; a tree of halves.
@@ -66,6 +55,17 @@ struct LightNumber {
     count: u32,
     /// Groups that each light has sums of.
     groups: u32,
+    reserved_a: u32,
+}
+
+// ---- airlight::inverse::slice_steps ----
+// summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
+// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
+
+/// Voxels of what is solved for. 16 bytes.
+struct VoxelGrid {
+    /// Along x, y and z, each from 1 up.
+    size: vec3<u32>,
     reserved_a: u32,
 }
 

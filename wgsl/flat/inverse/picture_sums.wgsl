@@ -12,20 +12,6 @@
 // binding difference: out, what was weighed, like `rendered`.
 // binding sums: out, of each group, weighed sum of squares of the difference, or of the picture, by channel.
 
-// ---- airlight::inverse::slice_steps ----
-// summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
-// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
-
-/// Rows of a picture. 16 bytes.
-struct PictureRows {
-    /// From 0 at the top.
-    first: u32,
-    /// How many.
-    count: u32,
-    reserved_a: u32,
-    reserved_b: u32,
-}
-
 // ---- airlight::inverse::group_sum ----
 // summary: The sum over a group of 128 threads, always added up in the same order.
 // source: none; a tree of halves.
@@ -54,6 +40,20 @@ fn group_sum(thread: u32, value: vec4<f32>) -> vec4<f32> {
 /// Number of a group of a dispatch, the first axis fastest.
 fn group_index(group: vec3<u32>, groups: vec3<u32>) -> u32 {
     return (group.z * groups.y + group.y) * groups.x + group.x;
+}
+
+// ---- airlight::inverse::slice_steps ----
+// summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
+// source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
+
+/// Rows of a picture. 16 bytes.
+struct PictureRows {
+    /// From 0 at the top.
+    first: u32,
+    /// How many.
+    count: u32,
+    reserved_a: u32,
+    reserved_b: u32,
 }
 
 // ---- inverse/picture_sums ----

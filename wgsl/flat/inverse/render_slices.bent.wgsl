@@ -66,6 +66,43 @@ fn triangle_field(field: texture_3d<f32>, unit: vec3<f32>) -> vec4<f32> {
     return mix(mix(a, b, part.y), mix(c, d, part.y), part.z);
 }
 
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+/// The texel of channels.
+fn texel_of(value: vec3<f32>) -> vec4<f32> {
+    return vec4<f32>(value, 1.0);
+}
+
+/// The same number in all channels.
+fn all_channels(value: f32) -> vec3<f32> {
+    return vec3<f32>(value);
+}
+
+/// Optical depth of a step through an extinction; below 0 there is none.
+fn step_depth(extinction: vec3<f32>, metres: f32) -> vec3<f32> {
+    return max(extinction, vec3<f32>(0.0)) * metres;
+}
+
+/// What a step of an optical depth takes of what passes.
+fn taken_of(depth: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(one_minus_exp(depth.x), one_minus_exp(depth.y), one_minus_exp(depth.z));
+}
+
+/// What a step through an extinction weighs behind an optical depth, to which it is added.
+fn step_weight(depth: ptr<function, vec3<f32>>, extinction: vec3<f32>, metres: f32) -> vec3<f32> {
+    let passed = step_depth(extinction, metres);
+    let weight = exp(-*depth) * taken_of(passed);
+    *depth += passed;
+    return weight;
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -264,43 +301,6 @@ fn next_part(refraction: texture_3d<f32>, slopes: BoxSlopes, ray: ptr<function, 
     let part = part_ahead(slopes, *ray, step);
     *ray = after_part(refraction, slopes, *ray, part, step);
     return part;
-}
-
-// ---- airlight::inverse::channels ----
-// summary: One number or three a voxel and a pixel.
-// source: none; arithmetic of one and of three is the same.
-
-/// The channels of a texel.
-fn channels_of(texel: vec4<f32>) -> vec3<f32> {
-    return texel.rgb;
-}
-
-/// The texel of channels.
-fn texel_of(value: vec3<f32>) -> vec4<f32> {
-    return vec4<f32>(value, 1.0);
-}
-
-/// The same number in all channels.
-fn all_channels(value: f32) -> vec3<f32> {
-    return vec3<f32>(value);
-}
-
-/// Optical depth of a step through an extinction; below 0 there is none.
-fn step_depth(extinction: vec3<f32>, metres: f32) -> vec3<f32> {
-    return max(extinction, vec3<f32>(0.0)) * metres;
-}
-
-/// What a step of an optical depth takes of what passes.
-fn taken_of(depth: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(one_minus_exp(depth.x), one_minus_exp(depth.y), one_minus_exp(depth.z));
-}
-
-/// What a step through an extinction weighs behind an optical depth, to which it is added.
-fn step_weight(depth: ptr<function, vec3<f32>>, extinction: vec3<f32>, metres: f32) -> vec3<f32> {
-    let passed = step_depth(extinction, metres);
-    let weight = exp(-*depth) * taken_of(passed);
-    *depth += passed;
-    return weight;
 }
 
 // ---- inverse/render_slices ----

@@ -107,6 +107,20 @@ fn triangle_field(field: texture_3d<f32>, unit: vec3<f32>) -> vec4<f32> {
     return mix(mix(a, b, part.y), mix(c, d, part.y), part.z);
 }
 
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+/// The same number in all channels.
+fn all_channels(value: f32) -> vec3<f32> {
+    return vec3<f32>(value);
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -186,20 +200,6 @@ fn ray_span(ray: SliceRay, limit: f32) -> vec2<f32> {
     let begins = max(max(enters.x, enters.y), max(enters.z, 0.0));
     let ends = min(min(leaves.x, leaves.y), leaves.z);
     return vec2<f32>(begins, min(ends, max(limit, 0.0) / max(ray.metres, 1e-30)));
-}
-
-// ---- airlight::inverse::channels ----
-// summary: One number or three a voxel and a pixel.
-// source: none; arithmetic of one and of three is the same.
-
-/// The channels of a texel.
-fn channels_of(texel: vec4<f32>) -> vec3<f32> {
-    return texel.rgb;
-}
-
-/// The same number in all channels.
-fn all_channels(value: f32) -> vec3<f32> {
-    return vec3<f32>(value);
 }
 
 // ---- airlight::inverse::light_layers ----

@@ -71,6 +71,53 @@ fn triangle_field(field: texture_3d<f32>, unit: vec3<f32>) -> vec4<f32> {
     return mix(mix(a, b, part.y), mix(c, d, part.y), part.z);
 }
 
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+// ---- airlight::inverse::fixed_point ----
+// summary: Sums of a back-projection in fixed point of 64 bits: no order of additions changes them.
+// source: none; two's complement in two words, the lower one first.
+
+/// A power of two. `exponent`: -126 to 127.
+fn power_of_two(exponent: i32) -> f32 {
+    return bitcast<f32>(u32(clamp(exponent, -126, 127) + 127) << 23u);
+}
+
+/// Exponent of a power of two that is greater than what the bits of a float say.
+fn exponent_above(bits: u32) -> i32 {
+    return i32((bits & 0x7fffffffu) >> 23u) - 126;
+}
+
+/// The exponent e of the note. Bits of floats: `greatest` of the picture's greatest absolute value, `bound` of the bound of row sums.
+fn fixed_exponent(greatest: u32, bound: u32) -> i32 {
+    return clamp(exponent_above(greatest) + exponent_above(bound), -60, 120);
+}
+
+/// The exponent b of the note.
+fn pixel_exponent(pixels: u32) -> i32 {
+    return 32 - i32(countLeadingZeros(pixels));
+}
+
+/// The negative of a number of two words.
+fn negative_words(words: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>(~words.x + 1u, ~words.y + select(0u, 1u, words.x == 0u));
+}
+
+/// A number in fixed point, cut off towards 0. `exponent`: e, `pixels`: b of the note.
+fn fixed_words(value: f32, exponent: i32, pixels: i32) -> vec2<u32> {
+    let share = clamp(value * power_of_two(-exponent), -1.0, 1.0);
+    let upper = abs(share) * power_of_two(29 - pixels);
+    let whole = floor(upper);
+    let words = vec2<u32>(u32((upper - whole) * 4294967296.0), u32(whole));
+    return select(words, negative_words(words), share < 0.0);
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -276,53 +323,6 @@ fn next_part(refraction: texture_3d<f32>, slopes: BoxSlopes, ray: ptr<function, 
     let part = part_ahead(slopes, *ray, step);
     *ray = after_part(refraction, slopes, *ray, part, step);
     return part;
-}
-
-// ---- airlight::inverse::channels ----
-// summary: One number or three a voxel and a pixel.
-// source: none; arithmetic of one and of three is the same.
-
-/// The channels of a texel.
-fn channels_of(texel: vec4<f32>) -> vec3<f32> {
-    return texel.rgb;
-}
-
-// ---- airlight::inverse::fixed_point ----
-// summary: Sums of a back-projection in fixed point of 64 bits: no order of additions changes them.
-// source: none; two's complement in two words, the lower one first.
-
-/// A power of two. `exponent`: -126 to 127.
-fn power_of_two(exponent: i32) -> f32 {
-    return bitcast<f32>(u32(clamp(exponent, -126, 127) + 127) << 23u);
-}
-
-/// Exponent of a power of two that is greater than what the bits of a float say.
-fn exponent_above(bits: u32) -> i32 {
-    return i32((bits & 0x7fffffffu) >> 23u) - 126;
-}
-
-/// The exponent e of the note. Bits of floats: `greatest` of the picture's greatest absolute value, `bound` of the bound of row sums.
-fn fixed_exponent(greatest: u32, bound: u32) -> i32 {
-    return clamp(exponent_above(greatest) + exponent_above(bound), -60, 120);
-}
-
-/// The exponent b of the note.
-fn pixel_exponent(pixels: u32) -> i32 {
-    return 32 - i32(countLeadingZeros(pixels));
-}
-
-/// The negative of a number of two words.
-fn negative_words(words: vec2<u32>) -> vec2<u32> {
-    return vec2<u32>(~words.x + 1u, ~words.y + select(0u, 1u, words.x == 0u));
-}
-
-/// A number in fixed point, cut off towards 0. `exponent`: e, `pixels`: b of the note.
-fn fixed_words(value: f32, exponent: i32, pixels: i32) -> vec2<u32> {
-    let share = clamp(value * power_of_two(-exponent), -1.0, 1.0);
-    let upper = abs(share) * power_of_two(29 - pixels);
-    let whole = floor(upper);
-    let words = vec2<u32>(u32((upper - whole) * 4294967296.0), u32(whole));
-    return select(words, negative_words(words), share < 0.0);
 }
 
 // ---- inverse/scatter_steps ----

@@ -52,6 +52,24 @@ fn triangle_corner(unit: vec3<f32>, size: vec3<u32>, corner: u32) -> Corner {
     return Corner(vec3<u32>(select(low, min(low + 1.0, last), upper)), weights.x * weights.y * weights.z);
 }
 
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+// ---- airlight::inverse::fixed_point ----
+// summary: Sums of a back-projection in fixed point of 64 bits: no order of additions changes them.
+// source: none; two's complement in two words, the lower one first.
+
+/// The exponent b of the note.
+fn pixel_exponent(pixels: u32) -> i32 {
+    return 32 - i32(countLeadingZeros(pixels));
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -177,24 +195,6 @@ fn slice_part(view: SliceView, ray: SliceRay, span: vec2<f32>, slice: u32) -> Sl
     let part = max(end - begin, 0.0);
     let middle = ray.origin + ray.direction * (begin + 0.5 * part);
     return SlicePart(middle + view.axis * (0.5 * (sides.x + sides.y) - dot(middle, view.axis)), part * ray.metres);
-}
-
-// ---- airlight::inverse::channels ----
-// summary: One number or three a voxel and a pixel.
-// source: none; arithmetic of one and of three is the same.
-
-/// The channels of a texel.
-fn channels_of(texel: vec4<f32>) -> vec3<f32> {
-    return texel.rgb;
-}
-
-// ---- airlight::inverse::fixed_point ----
-// summary: Sums of a back-projection in fixed point of 64 bits: no order of additions changes them.
-// source: none; two's complement in two words, the lower one first.
-
-/// The exponent b of the note.
-fn pixel_exponent(pixels: u32) -> i32 {
-    return 32 - i32(countLeadingZeros(pixels));
 }
 
 // ---- inverse/scatter_steps ----

@@ -11,6 +11,44 @@
 // binding solved: 0 where a voxel is not solved for: it stays as it is. A number a voxel, x fastest.
 // binding collected: in and out, a number a voxel; four with RGB, of which the last stays as it is.
 
+// ---- airlight::inverse::fixed_point ----
+// summary: Sums of a back-projection in fixed point of 64 bits: no order of additions changes them.
+// source: none; two's complement in two words, the lower one first.
+
+/// A power of two. `exponent`: -126 to 127.
+fn power_of_two(exponent: i32) -> f32 {
+    return bitcast<f32>(u32(clamp(exponent, -126, 127) + 127) << 23u);
+}
+
+/// Exponent of a power of two that is greater than what the bits of a float say.
+fn exponent_above(bits: u32) -> i32 {
+    return i32((bits & 0x7fffffffu) >> 23u) - 126;
+}
+
+/// The exponent e of the note. Bits of floats: `greatest` of the picture's greatest absolute value, `bound` of the bound of row sums.
+fn fixed_exponent(greatest: u32, bound: u32) -> i32 {
+    return clamp(exponent_above(greatest) + exponent_above(bound), -60, 120);
+}
+
+/// The exponent b of the note.
+fn pixel_exponent(pixels: u32) -> i32 {
+    return 32 - i32(countLeadingZeros(pixels));
+}
+
+/// The negative of a number of two words.
+fn negative_words(words: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>(~words.x + 1u, ~words.y + select(0u, 1u, words.x == 0u));
+}
+
+/// The float next to a number in fixed point, or next but one.
+fn fixed_number(words: vec2<u32>, exponent: i32, pixels: i32) -> f32 {
+    let negative = words.y >= 0x80000000u;
+    let size = select(words, negative_words(words), negative);
+    let unit = exponent + pixels - 61;
+    let number = f32(size.y) * power_of_two(unit + 32) + f32(size.x) * power_of_two(unit);
+    return select(number, -number, negative);
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -64,44 +102,6 @@ struct VoxelGrid {
     /// Along x, y and z, each from 1 up.
     size: vec3<u32>,
     reserved_a: u32,
-}
-
-// ---- airlight::inverse::fixed_point ----
-// summary: Sums of a back-projection in fixed point of 64 bits: no order of additions changes them.
-// source: none; two's complement in two words, the lower one first.
-
-/// A power of two. `exponent`: -126 to 127.
-fn power_of_two(exponent: i32) -> f32 {
-    return bitcast<f32>(u32(clamp(exponent, -126, 127) + 127) << 23u);
-}
-
-/// Exponent of a power of two that is greater than what the bits of a float say.
-fn exponent_above(bits: u32) -> i32 {
-    return i32((bits & 0x7fffffffu) >> 23u) - 126;
-}
-
-/// The exponent e of the note. Bits of floats: `greatest` of the picture's greatest absolute value, `bound` of the bound of row sums.
-fn fixed_exponent(greatest: u32, bound: u32) -> i32 {
-    return clamp(exponent_above(greatest) + exponent_above(bound), -60, 120);
-}
-
-/// The exponent b of the note.
-fn pixel_exponent(pixels: u32) -> i32 {
-    return 32 - i32(countLeadingZeros(pixels));
-}
-
-/// The negative of a number of two words.
-fn negative_words(words: vec2<u32>) -> vec2<u32> {
-    return vec2<u32>(~words.x + 1u, ~words.y + select(0u, 1u, words.x == 0u));
-}
-
-/// The float next to a number in fixed point, or next but one.
-fn fixed_number(words: vec2<u32>, exponent: i32, pixels: i32) -> f32 {
-    let negative = words.y >= 0x80000000u;
-    let size = select(words, negative_words(words), negative);
-    let unit = exponent + pixels - 61;
-    let number = f32(size.y) * power_of_two(unit + 32) + f32(size.x) * power_of_two(unit);
-    return select(number, -number, negative);
 }
 
 // ---- inverse/scattered_sums ----

@@ -12,6 +12,20 @@
 // binding weighed: out, columns, rows of the picture from the first on, slices; r32float, rgba32float with RGB. One
 // binding weighed: slice with PATHS.
 
+// ---- airlight::inverse::channels ----
+// summary: One number or three a voxel and a pixel.
+// source: none; arithmetic of one and of three is the same.
+
+/// The channels of a texel.
+fn channels_of(texel: vec4<f32>) -> vec3<f32> {
+    return texel.rgb;
+}
+
+/// The texel of channels.
+fn texel_of(value: vec3<f32>) -> vec4<f32> {
+    return vec4<f32>(value, 1.0);
+}
+
 // ---- airlight::inverse::slice_steps ----
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
@@ -92,20 +106,6 @@ fn slice_ray(view: SliceView, pixel: vec2<f32>) -> SliceRay {
 fn whole_slice_metres(view: SliceView, ray: SliceRay) -> f32 {
     let speed = abs(dot(ray.direction, view.axis)) * f32(view.slices);
     return select(ray.metres / max(speed, 1e-30), 0.0, speed == 0.0);
-}
-
-// ---- airlight::inverse::channels ----
-// summary: One number or three a voxel and a pixel.
-// source: none; arithmetic of one and of three is the same.
-
-/// The channels of a texel.
-fn channels_of(texel: vec4<f32>) -> vec3<f32> {
-    return texel.rgb;
-}
-
-/// The texel of channels.
-fn texel_of(value: vec3<f32>) -> vec4<f32> {
-    return vec4<f32>(value, 1.0);
 }
 
 // ---- inverse/weigh_slices ----

@@ -21,18 +21,55 @@
 // binding linear_sampler: linear, clamped to the edge.
 // binding brick_distances: of each brick to the nearest in which anything is solid, in bricks, r32uint; with SKIPPING only.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::bricks ----
+// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
+// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+/// Voxels along a brick.
+const BRICK: u32 = 8u;
+/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
+const MARGIN: f32 = 0.01;
+
+/// Bricks along each axis of a volume of `size` voxels.
+fn brick_count(size: vec3<u32>) -> vec3<u32> {
+    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
 }
 
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
+/// The brick of a place in unit space; outside of the volume the nearest inside.
+fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
+    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
+    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
+}
+
+/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
+/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
+fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
+    let side = f32(BRICK) / vec3<f32>(size);
+    let brick = vec3<f32>(brick_at(unit, size));
+    let reach = f32(max(distance, 1u));
+    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
+    let still = abs(step) < vec3<f32>(1e-12);
+    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
+    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
+}
+
+/// Samples of a march that lie among bricks that are alike.
+struct Run {
+    /// The first that may hold something; `end` where none does.
+    begin: u32,
+    /// The first of the next run.
+    end: u32,
+}
+
+/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
+/// from sample to sample, in unit space.
+fn run_of_samples(
+    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
+) -> Run {
+    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
+    let distance = textureLoad(distances, brick, 0).x;
+    let end = min(i + samples_alike(unit, step, size, distance), steps);
+    return Run(select(end, i, distance == 0u), end);
 }
 
 // ---- airlight::core::camera ----
@@ -84,55 +121,18 @@ fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     return Ray(origin, normalize(far.xyz - select(camera.eye * far.w, near.xyz, parallel)));
 }
 
-// ---- airlight::core::bricks ----
-// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
-// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Voxels along a brick.
-const BRICK: u32 = 8u;
-/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
-const MARGIN: f32 = 0.01;
-
-/// Bricks along each axis of a volume of `size` voxels.
-fn brick_count(size: vec3<u32>) -> vec3<u32> {
-    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-/// The brick of a place in unit space; outside of the volume the nearest inside.
-fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
-    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
-    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
-}
-
-/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
-/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
-fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
-    let side = f32(BRICK) / vec3<f32>(size);
-    let brick = vec3<f32>(brick_at(unit, size));
-    let reach = f32(max(distance, 1u));
-    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
-    let still = abs(step) < vec3<f32>(1e-12);
-    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
-    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
-}
-
-/// Samples of a march that lie among bricks that are alike.
-struct Run {
-    /// The first that may hold something; `end` where none does.
-    begin: u32,
-    /// The first of the next run.
-    end: u32,
-}
-
-/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
-/// from sample to sample, in unit space.
-fn run_of_samples(
-    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
-) -> Run {
-    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
-    let distance = textureLoad(distances, brick, 0).x;
-    let end = min(i + samples_alike(unit, step, size, distance), steps);
-    return Run(select(end, i, distance == 0u), end);
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::jitter ----

@@ -12,6 +12,13 @@
 // binding counts: for each entry of the table, how many before it are solid; one more than entries.
 // binding distances: out, r32uint, a texel a brick: 0 where anything may be solid, else NOTHING_NEAR.
 
+// ---- airlight::core::bricks ----
+// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
+// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
+
+/// The distance where no brick is occupied.
+const NOTHING_NEAR: u32 = 4096u;
+
 // ---- airlight::core::finite ----
 // summary: Replaces NaN and infinities in data that comes from outside.
 // source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
@@ -25,13 +32,6 @@ fn is_finite(x: f32) -> bool {
 fn finite_or(x: f32, fallback: f32) -> f32 {
     return select(fallback, x, is_finite(x));
 }
-
-// ---- airlight::core::bricks ----
-// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
-// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
-
-/// The distance where no brick is occupied.
-const NOTHING_NEAR: u32 = 4096u;
 
 // ---- airlight::core::transfer_function ----
 // summary: What colour and opacity a value of a volume has, by a table.

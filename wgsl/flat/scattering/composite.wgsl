@@ -10,25 +10,6 @@
 // binding scattered: linear RGB in-scattered radiance.
 // binding composed: out, linear RGB radiance, rgba16float.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -86,6 +67,25 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     // along / w, without dividing by a w that is zero or has rounded below it.
     let beyond = along >= limit * point.w;
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::scattering::single_scatter ----

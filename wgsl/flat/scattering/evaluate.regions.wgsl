@@ -17,20 +17,6 @@
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -71,6 +57,20 @@ fn perspective_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
     // With w = 0 (infinite far plane) far.xyz is the direction itself.
     return Ray(camera.eye, normalize(far.xyz - camera.eye * far.w));
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -234,6 +234,40 @@ fn prefix_weight(optical_step: f32, texels: f32) -> f32 {
     return one_minus_exp(thickness * texels) / one_minus_exp(thickness);
 }
 
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Mean visibility of a view ray over `steps` equal steps through a standard shadow map, weighted by
+/// transmittance. `origin`, `direction`: of the ray in the world; `distance`: its length in metres;
+/// `extinction` in 1/m, zero for the plain mean; `offset`: 0..1, where in each step the sample lies.
+/// Outside the map everything is lit.
+fn march_shadow_map(
+    map: texture_2d<f32>, light: Light, origin: vec3<f32>, direction: vec3<f32>,
+    distance: f32, extinction: f32, steps: u32, offset: f32
+) -> f32 {
+    let size = vec2<f32>(textureDimensions(map));
+    // A directional light's matrix is affine: the ray is a straight line in texels and depth.
+    let first = shadow_position(light, size, origin);
+    let last = shadow_position(light, size, origin + direction * distance);
+    let stride = (last - first) / f32(max(steps, 1u));
+    // Depth must grow away from the light for the comparison.
+    let facing = select(-1.0, 1.0, light.far_depth > 0.5);
+    let ratio = exp(-extinction * distance / f32(max(steps, 1u)));
+    var sum = 0.0;
+    var total = 0.0;
+    for (var left = steps; left > 0u; left--) {
+        let at = first + stride * (f32(left) - 1.0 + offset);
+        let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
+        let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
+        let stored = finite_or(textureLoad(map, texel, 0).x, light.far_depth);
+        let lit = !inside || stored == light.far_depth || at.z * facing <= stored * facing;
+        sum = sum * ratio + select(0.0, 1.0, lit);
+        total = total * ratio + 1.0;
+    }
+    return sum / max(total, 1.0);
+}
+
 // ---- airlight::scattering::rectify ----
 // summary: Epipolar coordinates around a directional light: rows are slices, columns radii, depth the angle to the light.
 // source: thesis 4.4.1, after Baran et al., "A hierarchical volumetric shadow algorithm" (2010); Eq. 4.12.
@@ -346,79 +380,6 @@ fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
     return clamp(depth_from_angle(slice, ray.angle), GUARD, 1.0 - GUARD);
 }
 
-// ---- airlight::scattering::single_scatter ----
-// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
-// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
-
-/// A homogeneous medium. 32 bytes.
-struct Medium {
-    /// Single-scattering albedo, 0..1 for each colour.
-    albedo: vec3<f32>,
-    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
-    extinction: f32,
-    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
-    g: f32,
-    /// Rays end here if they meet nothing nearer, metres, positive.
-    distance_limit: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-}
-
-/// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or
-/// plain, 0..1; `distance`: length of the ray in metres; `cosine`: view direction times direction
-/// towards the light.
-fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
-    let phase = henyey_greenstein(cosine, medium.g);
-    return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
-}
-
-// ---- airlight::scattering::march ----
-// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
-// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
-
-/// Mean visibility of a view ray over `steps` equal steps through a standard shadow map, weighted by
-/// transmittance. `origin`, `direction`: of the ray in the world; `distance`: its length in metres;
-/// `extinction` in 1/m, zero for the plain mean; `offset`: 0..1, where in each step the sample lies.
-/// Outside the map everything is lit.
-fn march_shadow_map(
-    map: texture_2d<f32>, light: Light, origin: vec3<f32>, direction: vec3<f32>,
-    distance: f32, extinction: f32, steps: u32, offset: f32
-) -> f32 {
-    let size = vec2<f32>(textureDimensions(map));
-    // A directional light's matrix is affine: the ray is a straight line in texels and depth.
-    let first = shadow_position(light, size, origin);
-    let last = shadow_position(light, size, origin + direction * distance);
-    let stride = (last - first) / f32(max(steps, 1u));
-    // Depth must grow away from the light for the comparison.
-    let facing = select(-1.0, 1.0, light.far_depth > 0.5);
-    let ratio = exp(-extinction * distance / f32(max(steps, 1u)));
-    var sum = 0.0;
-    var total = 0.0;
-    for (var left = steps; left > 0u; left--) {
-        let at = first + stride * (f32(left) - 1.0 + offset);
-        let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
-        let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
-        let stored = finite_or(textureLoad(map, texel, 0).x, light.far_depth);
-        let lit = !inside || stored == light.far_depth || at.z * facing <= stored * facing;
-        sum = sum * ratio + select(0.0, 1.0, lit);
-        total = total * ratio + 1.0;
-    }
-    return sum / max(total, 1.0);
-}
-
-// ---- airlight::scattering::lit ----
-// summary: Callback: the light that reaches a point, and its mean over a view ray by marching, from a pass' bindings.
-// source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
-
-@group(0) @binding(6) var shadow_map: texture_2d<f32>;
-
-/// Mean visibility of a view ray of `distance` metres by marching one shadow map; faster than `marched_light`.
-fn marched_visibility(
-    light: Light, origin: vec3<f32>, direction: vec3<f32>, distance: f32, extinction: f32, steps: u32, offset: f32
-) -> f32 {
-    return march_shadow_map(shadow_map, light, origin, direction, distance, extinction, steps, offset);
-}
-
 // ---- airlight::scattering::rows ----
 // summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
 // source: thesis 4.3.3 (regions), 4.4.2 (near plane).
@@ -451,6 +412,73 @@ fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
 /// up to and with i, so that half a texel is taken off; at the start of the region that begins at `first` it stays inside.
 fn prefix_column(texels: f32, first: f32) -> f32 {
     return max(texels - 0.5, first + 0.5);
+}
+
+// ---- airlight::scattering::scattered_ray ----
+// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
+// source: thesis 4.3.3, Listing 4.4.
+
+/// What stands for infinity, metres.
+const FARTHEST: f32 = 1e15;
+
+/// A view ray and the light that the air scatters into it.
+struct ScatteredRay {
+    /// Linear RGB radiance at the eye, at most 65504.
+    radiance: vec3<f32>,
+    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
+    /// colours.
+    visibility: f32,
+    /// Where it passes through the picture.
+    ndc: vec2<f32>,
+    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
+    /// the medium may end before.
+    distance: f32,
+    /// View direction times the unit vector at its origin towards the light, -1..1.
+    cosine: f32,
+}
+
+/// What passes write of it: radiance, and in alpha the mean visibility.
+fn scattered_texel(ray: ScatteredRay) -> vec4<f32> {
+    return vec4<f32>(ray.radiance, ray.visibility);
+}
+
+// ---- airlight::scattering::single_scatter ----
+// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
+// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
+
+/// A homogeneous medium. 32 bytes.
+struct Medium {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
+    extinction: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// Rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
+/// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or
+/// plain, 0..1; `distance`: length of the ray in metres; `cosine`: view direction times direction
+/// towards the light.
+fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
+    let phase = henyey_greenstein(cosine, medium.g);
+    return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
+}
+
+// ---- airlight::scattering::lit ----
+// summary: Callback: the light that reaches a point, and its mean over a view ray by marching, from a pass' bindings.
+// source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
+
+@group(0) @binding(6) var shadow_map: texture_2d<f32>;
+
+/// Mean visibility of a view ray of `distance` metres by marching one shadow map; faster than `marched_light`.
+fn marched_visibility(
+    light: Light, origin: vec3<f32>, direction: vec3<f32>, distance: f32, extinction: f32, steps: u32, offset: f32
+) -> f32 {
+    return march_shadow_map(shadow_map, light, origin, direction, distance, extinction, steps, offset);
 }
 
 // ---- airlight::scattering::visibility_fourier ----
@@ -532,34 +560,6 @@ fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
     let column = prefix_column(at.texels, at.first);
     let place = vec2<f32>(column, at.row + 0.5) / vec2<f32>(map_size());
     return fourier_visibility(bases, bases_sampler, place, depth, LAYERS, WINDOWED);
-}
-
-// ---- airlight::scattering::scattered_ray ----
-// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
-// source: thesis 4.3.3, Listing 4.4.
-
-/// What stands for infinity, metres.
-const FARTHEST: f32 = 1e15;
-
-/// A view ray and the light that the air scatters into it.
-struct ScatteredRay {
-    /// Linear RGB radiance at the eye, at most 65504.
-    radiance: vec3<f32>,
-    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
-    /// colours.
-    visibility: f32,
-    /// Where it passes through the picture.
-    ndc: vec2<f32>,
-    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
-    /// the medium may end before.
-    distance: f32,
-    /// View direction times the unit vector at its origin towards the light, -1..1.
-    cosine: f32,
-}
-
-/// What passes write of it: radiance, and in alpha the mean visibility.
-fn scattered_texel(ray: ScatteredRay) -> vec4<f32> {
-    return vec4<f32>(ray.radiance, ray.visibility);
 }
 
 // ---- airlight::scattering::evaluated ----

@@ -17,20 +17,6 @@
 // binding bases_sampler: linear; clamp to edge in u, repeat in v; absent with NEAREST, RANK and MOMENTS.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -71,6 +57,20 @@ fn perspective_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     let far = camera.world_from_clip * vec4<f32>(ndc, camera.far_depth, 1.0);
     // With w = 0 (infinite far plane) far.xyz is the direction itself.
     return Ray(camera.eye, normalize(far.xyz - camera.eye * far.w));
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -342,6 +342,87 @@ fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
     return clamp(depth_from_angle(slice, ray.angle), GUARD, 1.0 - GUARD);
 }
 
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// A view ray in a rectified map.
+struct RowRay {
+    /// Row, fractional; row j is at the value j.
+    row: f32,
+    /// Texels before the ray begins, fractional.
+    begin: f32,
+    /// Texels before the ray ends, fractional.
+    end: f32,
+    /// Depth of the ray, 0..1.
+    depth: f32,
+}
+
+/// Where the prefix mean over the texels before `texels` is read, in texels: texel i holds the mean over the texels
+/// up to and with i, so that half a texel is taken off; at the start of the region that begins at `first` it stays inside.
+fn prefix_column(texels: f32, first: f32) -> f32 {
+    return max(texels - 0.5, first + 0.5);
+}
+
+// ---- airlight::scattering::scattered_ray ----
+// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
+// source: thesis 4.3.3, Listing 4.4.
+
+/// What stands for infinity, metres.
+const FARTHEST: f32 = 1e15;
+
+/// A view ray and the light that the air scatters into it.
+struct ScatteredRay {
+    /// Linear RGB radiance at the eye, at most 65504.
+    radiance: vec3<f32>,
+    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
+    /// colours.
+    visibility: f32,
+    /// Where it passes through the picture.
+    ndc: vec2<f32>,
+    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
+    /// the medium may end before.
+    distance: f32,
+    /// View direction times the unit vector at its origin towards the light, -1..1.
+    cosine: f32,
+}
+
+/// What passes write of it: radiance, and in alpha the mean visibility.
+fn scattered_texel(ray: ScatteredRay) -> vec4<f32> {
+    return vec4<f32>(ray.radiance, ray.visibility);
+}
+
+// ---- airlight::scattering::shadow_lookup ----
+// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
+// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
+
+/// A texel of a shadow map, on the way from a point in the world.
+struct Shadow {
+    /// Depth of the point itself.
+    depth: f32,
+    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
+    stored: f32,
+    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
+    blocked: u32,
+}
+
+/// The shadow map's texel on the light ray through `point`, metres in the world. `map`: a depth format or r32float.
+fn shadow_in_map(map: texture_2d<f32>, light: Light, point: vec3<f32>) -> Shadow {
+    let size = vec2<f32>(textureDimensions(map));
+    let at = shadow_position(light, size, point);
+    let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
+    let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
+    let stored = clamp(finite_or(textureLoad(map, texel, 0).x, light.far_depth), 0.0, 1.0);
+    return Shadow(at.z, stored, select(0u, 1u, inside && stored != light.far_depth));
+}
+
+/// 1 where the point is lit, else 0. `far_depth`: of an empty texel, 1 forward, 0 reversed.
+fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
+    // Depth must grow away from the light for the comparison.
+    let facing = select(-1.0, 1.0, far_depth > 0.5);
+    return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
+}
+
 // ---- airlight::scattering::single_scatter ----
 // summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
 // source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
@@ -542,37 +623,6 @@ fn local_in_scattered(medium: Medium, intensity: vec3<f32>, integral: f32, lit: 
     return medium.albedo * intensity * lit * (medium.extinction * integral);
 }
 
-// ---- airlight::scattering::shadow_lookup ----
-// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
-// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
-
-/// A texel of a shadow map, on the way from a point in the world.
-struct Shadow {
-    /// Depth of the point itself.
-    depth: f32,
-    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
-    stored: f32,
-    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
-    blocked: u32,
-}
-
-/// The shadow map's texel on the light ray through `point`, metres in the world. `map`: a depth format or r32float.
-fn shadow_in_map(map: texture_2d<f32>, light: Light, point: vec3<f32>) -> Shadow {
-    let size = vec2<f32>(textureDimensions(map));
-    let at = shadow_position(light, size, point);
-    let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
-    let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
-    let stored = clamp(finite_or(textureLoad(map, texel, 0).x, light.far_depth), 0.0, 1.0);
-    return Shadow(at.z, stored, select(0u, 1u, inside && stored != light.far_depth));
-}
-
-/// 1 where the point is lit, else 0. `far_depth`: of an empty texel, 1 forward, 0 reversed.
-fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
-    // Depth must grow away from the light for the comparison.
-    let facing = select(-1.0, 1.0, far_depth > 0.5);
-    return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
-}
-
 // ---- airlight::scattering::lit ----
 // summary: Callback: the light that reaches a point, and its mean over a view ray by marching, from a pass' bindings.
 // source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
@@ -609,28 +659,6 @@ fn marched_local_light(
         total += weight;
     }
     return sum / max(total, 1e-30);
-}
-
-// ---- airlight::scattering::rows ----
-// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
-// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
-
-/// A view ray in a rectified map.
-struct RowRay {
-    /// Row, fractional; row j is at the value j.
-    row: f32,
-    /// Texels before the ray begins, fractional.
-    begin: f32,
-    /// Texels before the ray ends, fractional.
-    end: f32,
-    /// Depth of the ray, 0..1.
-    depth: f32,
-}
-
-/// Where the prefix mean over the texels before `texels` is read, in texels: texel i holds the mean over the texels
-/// up to and with i, so that half a texel is taken off; at the start of the region that begins at `first` it stays inside.
-fn prefix_column(texels: f32, first: f32) -> f32 {
-    return max(texels - 0.5, first + 0.5);
 }
 
 // ---- airlight::scattering::visibility_fourier ----
@@ -722,34 +750,6 @@ fn prefix_colors(at: Prefix, depth: f32) -> vec3<f32> {
     let column = prefix_column(at.texels, at.first);
     let place = vec2<f32>(column, at.row + 0.5) / vec2<f32>(map_size());
     return fourier_colors(bases, bases_sampler, place, depth, LAYERS, u32(1), WINDOWED);
-}
-
-// ---- airlight::scattering::scattered_ray ----
-// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
-// source: thesis 4.3.3, Listing 4.4.
-
-/// What stands for infinity, metres.
-const FARTHEST: f32 = 1e15;
-
-/// A view ray and the light that the air scatters into it.
-struct ScatteredRay {
-    /// Linear RGB radiance at the eye, at most 65504.
-    radiance: vec3<f32>,
-    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
-    /// colours.
-    visibility: f32,
-    /// Where it passes through the picture.
-    ndc: vec2<f32>,
-    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
-    /// the medium may end before.
-    distance: f32,
-    /// View direction times the unit vector at its origin towards the light, -1..1.
-    cosine: f32,
-}
-
-/// What passes write of it: radiance, and in alpha the mean visibility.
-fn scattered_texel(ray: ScatteredRay) -> vec4<f32> {
-    return vec4<f32>(ray.radiance, ray.visibility);
 }
 
 // ---- airlight::scattering::evaluated_local ----

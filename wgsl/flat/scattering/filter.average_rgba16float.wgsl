@@ -103,6 +103,15 @@ fn running_mean(mean: vec4<f32>, value: vec4<f32>, weights: RowWeights) -> vec4<
     return mean + (value - mean) * (weights.weight / weights.total);
 }
 
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// First texel of a region; of the region after the last, the width.
+fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
+    return (region * width + regions - 1u) / regions;
+}
+
 // ---- airlight::scattering::column_weights ----
 // summary: Callback: what the columns of a row weigh in the means over it, and the light's fall-off on them.
 // source: thesis 4.3.2, Eq. 4.8 and 4.12; 4.4.2.
@@ -139,15 +148,6 @@ fn next_column(current: WeightedColumn, size: vec2<u32>) -> WeightedColumn {
     var next = current;
     next.column += 1u;
     return next;
-}
-
-// ---- airlight::scattering::rows ----
-// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
-// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
-
-/// First texel of a region; of the region after the last, the width.
-fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
-    return (region * width + regions - 1u) / regions;
 }
 
 // ---- scattering/filter ----

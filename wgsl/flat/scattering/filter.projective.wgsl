@@ -112,24 +112,6 @@ fn one_minus_exp(x: f32) -> f32 {
     return select(1.0 - exp(-x), series, x < 0.3);
 }
 
-// ---- airlight::scattering::single_scatter ----
-// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
-// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
-
-/// A homogeneous medium. 32 bytes.
-struct Medium {
-    /// Single-scattering albedo, 0..1 for each colour.
-    albedo: vec3<f32>,
-    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
-    extinction: f32,
-    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
-    g: f32,
-    /// Rays end here if they meet nothing nearer, metres, positive.
-    distance_limit: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-}
-
 // ---- airlight::scattering::projective ----
 // summary: Projective rows around a directional light: view rays run along rows at constant depth after one matrix.
 // source: thesis 4.4.2; weights after 4.3.2, Eq. 4.8.
@@ -219,6 +201,33 @@ fn stretch_weight(extinction: f32, metres: f32) -> f32 {
     return select(one_minus_exp(depth) / max(extinction, 1e-30), metres * (1.0 - 0.5 * depth), depth < 1e-4);
 }
 
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// First texel of a region; of the region after the last, the width.
+fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
+    return (region * width + regions - 1u) / regions;
+}
+
+// ---- airlight::scattering::single_scatter ----
+// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
+// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
+
+/// A homogeneous medium. 32 bytes.
+struct Medium {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
+    extinction: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// Rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
 // ---- airlight::scattering::column_weights ----
 // summary: Callback: what the columns of a row weigh in the means over it, and the light's fall-off on them.
 // source: thesis 4.3.2, Eq. 4.8 and 4.12; 4.4.2.
@@ -275,15 +284,6 @@ fn next_column(current: WeightedColumn, size: vec2<u32>) -> WeightedColumn {
     next.metres = (next.edge - current.edge) * current.factor;
     next.weight = next.through * stretch_weight(weighing_extinction(), next.metres);
     return next;
-}
-
-// ---- airlight::scattering::rows ----
-// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
-// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
-
-/// First texel of a region; of the region after the last, the width.
-fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
-    return (region * width + regions - 1u) / regions;
 }
 
 // ---- scattering/filter ----

@@ -201,6 +201,15 @@ fn stretch_weight(extinction: f32, metres: f32) -> f32 {
     return select(one_minus_exp(depth) / max(extinction, 1e-30), metres * (1.0 - 0.5 * depth), depth < 1e-4);
 }
 
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// First texel of a region; of the region after the last, the width.
+fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
+    return (region * width + regions - 1u) / regions;
+}
+
 // ---- airlight::scattering::column_weights ----
 // summary: Callback: what the columns of a row weigh in the means over it, and the light's fall-off on them.
 // source: thesis 4.3.2, Eq. 4.8 and 4.12; 4.4.2.
@@ -256,15 +265,6 @@ fn next_column(current: WeightedColumn, size: vec2<u32>) -> WeightedColumn {
     next.metres = (next.edge - current.edge) * current.factor;
     next.weight = next.through * stretch_weight(weighing_extinction(), next.metres);
     return next;
-}
-
-// ---- airlight::scattering::rows ----
-// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
-// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
-
-/// First texel of a region; of the region after the last, the width.
-fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
-    return (region * width + regions - 1u) / regions;
 }
 
 // ---- scattering/filter ----

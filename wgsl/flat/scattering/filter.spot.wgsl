@@ -211,6 +211,15 @@ fn azimuth_direction(frame: Frame, azimuth: f32) -> vec3<f32> {
     return cos(azimuth) * frame.axis_a + sin(azimuth) * frame.axis_b;
 }
 
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// First texel of a region; of the region after the last, the width.
+fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
+    return (region * width + regions - 1u) / regions;
+}
+
 // ---- airlight::scattering::single_scatter ----
 // summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
 // source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
@@ -345,15 +354,6 @@ fn falloff_of_column(row: u32, unit: f32) -> vec3<f32> {
     let falloff = vec3<f32>(angular_falloff(light, -direction));
     let point = light.position + direction;
     return falloff;
-}
-
-// ---- airlight::scattering::rows ----
-// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
-// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
-
-/// First texel of a region; of the region after the last, the width.
-fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
-    return (region * width + regions - 1u) / regions;
 }
 
 // ---- scattering/filter ----

@@ -124,6 +124,15 @@ fn slice_from_texel(texel: vec4<f32>) -> Slice {
     return Slice(texel.x, texel.y, texel.z, texel.w);
 }
 
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// First texel of a region; of the region after the last, the width.
+fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
+    return (region * width + regions - 1u) / regions;
+}
+
 // ---- airlight::scattering::single_scatter ----
 // summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
 // source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
@@ -186,15 +195,6 @@ fn next_column(current: WeightedColumn, size: vec2<u32>) -> WeightedColumn {
     next.column += 1u;
     next.weight = current.weight * current.factor;
     return next;
-}
-
-// ---- airlight::scattering::rows ----
-// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
-// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
-
-/// First texel of a region; of the region after the last, the width.
-fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
-    return (region * width + regions - 1u) / regions;
 }
 
 // ---- scattering/filter ----

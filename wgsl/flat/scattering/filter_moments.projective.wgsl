@@ -69,24 +69,6 @@ fn one_minus_exp(x: f32) -> f32 {
     return select(1.0 - exp(-x), series, x < 0.3);
 }
 
-// ---- airlight::scattering::single_scatter ----
-// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
-// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
-
-/// A homogeneous medium. 32 bytes.
-struct Medium {
-    /// Single-scattering albedo, 0..1 for each colour.
-    albedo: vec3<f32>,
-    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
-    extinction: f32,
-    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
-    g: f32,
-    /// Rays end here if they meet nothing nearer, metres, positive.
-    distance_limit: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-}
-
 // ---- airlight::scattering::projective ----
 // summary: Projective rows around a directional light: view rays run along rows at constant depth after one matrix.
 // source: thesis 4.4.2; weights after 4.3.2, Eq. 4.8.
@@ -174,6 +156,24 @@ fn reference_reach(rows: ProjectiveRows, height: f32, row: f32) -> f32 {
 fn stretch_weight(extinction: f32, metres: f32) -> f32 {
     let depth = extinction * metres;
     return select(one_minus_exp(depth) / max(extinction, 1e-30), metres * (1.0 - 0.5 * depth), depth < 1e-4);
+}
+
+// ---- airlight::scattering::single_scatter ----
+// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
+// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
+
+/// A homogeneous medium. 32 bytes.
+struct Medium {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
+    extinction: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// Rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
 }
 
 // ---- airlight::scattering::column_weights ----

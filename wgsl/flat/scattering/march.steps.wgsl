@@ -14,20 +14,6 @@
 // binding parameters: number of steps, place of the samples, frame; with SHADOW_MAP or STEPS only.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -53,6 +39,20 @@ struct Camera {
 /// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
 fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -134,6 +134,28 @@ fn one_minus_exp(x: f32) -> f32 {
     const sixth: f32 = 1.0 / 6.0;
     let series = x * (1.0 - x * 0.5 * (1.0 - x * third * (1.0 - x * 0.25 * (1.0 - x * 0.2 * (1.0 - x * sixth)))));
     return select(1.0 - exp(-x), series, x < 0.3);
+}
+
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Plain mean visibility of a view ray over `steps` equal steps along a row of a rectified map: one
+/// texture load a step and nothing else, the fastest march there is. `depth`: of the ray, 0..1;
+/// `texels`: that the ray covers, fractional, clamped to the width of the map; `offset`: 0..1, where in
+/// each step the sample lies.
+fn march_row_steps(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, steps: u32, offset: f32) -> f32 {
+    let width = f32(textureDimensions(map).x);
+    let count = f32(max(steps, 1u));
+    let stride = clamp(texels, 1e-3, width) / count;
+    // The sum of strides is rounded at each step: the last sample stays inside the map.
+    var at = clamp(offset * stride, 0.0, max(width - 0.05 - stride * (count - 1.0), 0.0));
+    var lit = 0u;
+    for (var done = 0u; done < steps; done++) {
+        lit += select(0u, 1u, textureLoad(map, vec2<u32>(u32(at), row), 0).x >= depth);
+        at += stride;
+    }
+    return f32(lit) / count;
 }
 
 // ---- airlight::scattering::rectify ----
@@ -272,28 +294,6 @@ struct Medium {
 fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
     let phase = henyey_greenstein(cosine, medium.g);
     return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
-}
-
-// ---- airlight::scattering::march ----
-// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
-// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
-
-/// Plain mean visibility of a view ray over `steps` equal steps along a row of a rectified map: one
-/// texture load a step and nothing else, the fastest march there is. `depth`: of the ray, 0..1;
-/// `texels`: that the ray covers, fractional, clamped to the width of the map; `offset`: 0..1, where in
-/// each step the sample lies.
-fn march_row_steps(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, steps: u32, offset: f32) -> f32 {
-    let width = f32(textureDimensions(map).x);
-    let count = f32(max(steps, 1u));
-    let stride = clamp(texels, 1e-3, width) / count;
-    // The sum of strides is rounded at each step: the last sample stays inside the map.
-    var at = clamp(offset * stride, 0.0, max(width - 0.05 - stride * (count - 1.0), 0.0));
-    var lit = 0u;
-    for (var done = 0u; done < steps; done++) {
-        lit += select(0u, 1u, textureLoad(map, vec2<u32>(u32(at), row), 0).x >= depth);
-        at += stride;
-    }
-    return f32(lit) / count;
 }
 
 // ---- scattering/march ----

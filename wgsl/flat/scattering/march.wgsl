@@ -12,20 +12,6 @@
 // binding rectified: the rectified map; rows only.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -51,6 +37,20 @@ struct Camera {
 /// Normalised device coordinates of a position in pixels: (0, 0) is the top left corner of the picture.
 fn ndc_from_pixel(camera: Camera, pixel: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(2.0, -2.0) * pixel / camera.viewport + vec2<f32>(-1.0, 1.0);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -140,6 +140,33 @@ fn prefix_weight(optical_step: f32, texels: f32) -> f32 {
     // So thin that 1 - exp(-x) is x.
     let thickness = max(optical_step, 1e-30);
     return one_minus_exp(thickness * texels) / one_minus_exp(thickness);
+}
+
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Mean visibility over the first `texels` texels of a row of a rectified map, weighted by
+/// transmittance. `depth`: of the ray, 0..1; `texels`: fractional, clamped to the width of the map;
+/// `optical_step`: optical depth of the ray over one texel, zero for the plain mean.
+fn march_row(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, optical_step: f32) -> f32 {
+    let size = textureDimensions(map);
+    let covered = clamp(texels, 1e-3, f32(size.x));
+    let whole = min(u32(covered), size.x - 1u);
+    let part = covered - f32(whole);
+    let ratio = exp(-optical_step);
+    // Weights in units of the first texel's: 1, q, q^2 ...; the last texel counts in part.
+    let scale = one_minus_exp(optical_step);
+    let last = select(part, one_minus_exp(optical_step * part) / scale, scale > 1e-6);
+    var sum = 0.0;
+    if textureLoad(map, vec2<u32>(whole, row), 0).x >= depth {
+        sum = last;
+    }
+    for (var left = whole; left > 0u; left--) {
+        let lit = textureLoad(map, vec2<u32>(left - 1u, row), 0).x >= depth;
+        sum = sum * ratio + select(0.0, 1.0, lit);
+    }
+    return clamp(sum / prefix_weight(optical_step, covered), 0.0, 1.0);
 }
 
 // ---- airlight::scattering::rectify ----
@@ -278,33 +305,6 @@ struct Medium {
 fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
     let phase = henyey_greenstein(cosine, medium.g);
     return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
-}
-
-// ---- airlight::scattering::march ----
-// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
-// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
-
-/// Mean visibility over the first `texels` texels of a row of a rectified map, weighted by
-/// transmittance. `depth`: of the ray, 0..1; `texels`: fractional, clamped to the width of the map;
-/// `optical_step`: optical depth of the ray over one texel, zero for the plain mean.
-fn march_row(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, optical_step: f32) -> f32 {
-    let size = textureDimensions(map);
-    let covered = clamp(texels, 1e-3, f32(size.x));
-    let whole = min(u32(covered), size.x - 1u);
-    let part = covered - f32(whole);
-    let ratio = exp(-optical_step);
-    // Weights in units of the first texel's: 1, q, q^2 ...; the last texel counts in part.
-    let scale = one_minus_exp(optical_step);
-    let last = select(part, one_minus_exp(optical_step * part) / scale, scale > 1e-6);
-    var sum = 0.0;
-    if textureLoad(map, vec2<u32>(whole, row), 0).x >= depth {
-        sum = last;
-    }
-    for (var left = whole; left > 0u; left--) {
-        let lit = textureLoad(map, vec2<u32>(left - 1u, row), 0).x >= depth;
-        sum = sum * ratio + select(0.0, 1.0, lit);
-    }
-    return clamp(sum / prefix_weight(optical_step, covered), 0.0, 1.0);
 }
 
 // ---- scattering/march ----

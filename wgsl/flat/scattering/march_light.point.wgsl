@@ -15,20 +15,6 @@
 // binding parameters: number of steps.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility times fall-off 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -86,6 +72,20 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     // along / w, without dividing by a w that is zero or has rounded below it.
     let beyond = along >= limit * point.w;
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::light ----
@@ -243,6 +243,35 @@ fn view_position(views: ShadowViews, size: vec2<f32>, point: vec3<f32>) -> ViewP
     return ViewPosition(texels_from_clip(found.clip, size), found.view, found.inside);
 }
 
+// ---- airlight::scattering::shadow_lookup ----
+// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
+// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
+
+/// A texel of a shadow map, on the way from a point in the world.
+struct Shadow {
+    /// Depth of the point itself.
+    depth: f32,
+    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
+    stored: f32,
+    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
+    blocked: u32,
+}
+
+/// Like `shadow_in_map`, in the layer of an array that `place`, from `view_position`, names. `far_depth`: of an empty texel.
+fn shadow_in_view(maps: texture_2d_array<f32>, place: ViewPosition, far_depth: f32) -> Shadow {
+    let last = vec2<f32>(textureDimensions(maps)) - 1.0;
+    let texel = vec2<u32>(clamp(place.at.xy, vec2<f32>(0.0), last));
+    let stored = clamp(finite_or(textureLoad(maps, texel, place.view, 0).x, far_depth), 0.0, 1.0);
+    return Shadow(place.at.z, stored, select(0u, place.inside, stored != far_depth));
+}
+
+/// 1 where the point is lit, else 0. `far_depth`: of an empty texel, 1 forward, 0 reversed.
+fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
+    // Depth must grow away from the light for the comparison.
+    let facing = select(-1.0, 1.0, far_depth > 0.5);
+    return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
+}
+
 // ---- airlight::scattering::single_scatter ----
 // summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
 // source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
@@ -395,35 +424,6 @@ fn airlight(ray: LocalRay, extinction: f32, g: f32, from_along: f32, to_along: f
 /// fall-off over the light angles of the stretch that `integral` was taken over, for each colour, 0..1.
 fn local_in_scattered(medium: Medium, intensity: vec3<f32>, integral: f32, lit: vec3<f32>) -> vec3<f32> {
     return medium.albedo * intensity * lit * (medium.extinction * integral);
-}
-
-// ---- airlight::scattering::shadow_lookup ----
-// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
-// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
-
-/// A texel of a shadow map, on the way from a point in the world.
-struct Shadow {
-    /// Depth of the point itself.
-    depth: f32,
-    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
-    stored: f32,
-    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
-    blocked: u32,
-}
-
-/// Like `shadow_in_map`, in the layer of an array that `place`, from `view_position`, names. `far_depth`: of an empty texel.
-fn shadow_in_view(maps: texture_2d_array<f32>, place: ViewPosition, far_depth: f32) -> Shadow {
-    let last = vec2<f32>(textureDimensions(maps)) - 1.0;
-    let texel = vec2<u32>(clamp(place.at.xy, vec2<f32>(0.0), last));
-    let stored = clamp(finite_or(textureLoad(maps, texel, place.view, 0).x, far_depth), 0.0, 1.0);
-    return Shadow(place.at.z, stored, select(0u, place.inside, stored != far_depth));
-}
-
-/// 1 where the point is lit, else 0. `far_depth`: of an empty texel, 1 forward, 0 reversed.
-fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
-    // Depth must grow away from the light for the comparison.
-    let facing = select(-1.0, 1.0, far_depth > 0.5);
-    return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
 }
 
 // ---- airlight::scattering::lit ----

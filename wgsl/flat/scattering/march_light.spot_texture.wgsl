@@ -16,25 +16,6 @@
 // binding parameters: number of steps.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility times fall-off 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -92,6 +73,25 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     // along / w, without dividing by a w that is zero or has rounded below it.
     let beyond = along >= limit * point.w;
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::core::light ----
@@ -196,6 +196,37 @@ fn henyey_greenstein(cosine: f32, g: f32) -> f32 {
 /// Clip-space position of corner `index`, 0..2, of a triangle that covers the picture.
 fn picture_corner(index: u32) -> vec4<f32> {
     return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+// ---- airlight::scattering::shadow_lookup ----
+// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
+// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
+
+/// A texel of a shadow map, on the way from a point in the world.
+struct Shadow {
+    /// Depth of the point itself.
+    depth: f32,
+    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
+    stored: f32,
+    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
+    blocked: u32,
+}
+
+/// The shadow map's texel on the light ray through `point`, metres in the world. `map`: a depth format or r32float.
+fn shadow_in_map(map: texture_2d<f32>, light: Light, point: vec3<f32>) -> Shadow {
+    let size = vec2<f32>(textureDimensions(map));
+    let at = shadow_position(light, size, point);
+    let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
+    let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
+    let stored = clamp(finite_or(textureLoad(map, texel, 0).x, light.far_depth), 0.0, 1.0);
+    return Shadow(at.z, stored, select(0u, 1u, inside && stored != light.far_depth));
+}
+
+/// 1 where the point is lit, else 0. `far_depth`: of an empty texel, 1 forward, 0 reversed.
+fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
+    // Depth must grow away from the light for the comparison.
+    let facing = select(-1.0, 1.0, far_depth > 0.5);
+    return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
 }
 
 // ---- airlight::scattering::single_scatter ----
@@ -350,37 +381,6 @@ fn airlight(ray: LocalRay, extinction: f32, g: f32, from_along: f32, to_along: f
 /// fall-off over the light angles of the stretch that `integral` was taken over, for each colour, 0..1.
 fn local_in_scattered(medium: Medium, intensity: vec3<f32>, integral: f32, lit: vec3<f32>) -> vec3<f32> {
     return medium.albedo * intensity * lit * (medium.extinction * integral);
-}
-
-// ---- airlight::scattering::shadow_lookup ----
-// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
-// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
-
-/// A texel of a shadow map, on the way from a point in the world.
-struct Shadow {
-    /// Depth of the point itself.
-    depth: f32,
-    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
-    stored: f32,
-    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
-    blocked: u32,
-}
-
-/// The shadow map's texel on the light ray through `point`, metres in the world. `map`: a depth format or r32float.
-fn shadow_in_map(map: texture_2d<f32>, light: Light, point: vec3<f32>) -> Shadow {
-    let size = vec2<f32>(textureDimensions(map));
-    let at = shadow_position(light, size, point);
-    let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
-    let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
-    let stored = clamp(finite_or(textureLoad(map, texel, 0).x, light.far_depth), 0.0, 1.0);
-    return Shadow(at.z, stored, select(0u, 1u, inside && stored != light.far_depth));
-}
-
-/// 1 where the point is lit, else 0. `far_depth`: of an empty texel, 1 forward, 0 reversed.
-fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
-    // Depth must grow away from the light for the comparison.
-    let facing = select(-1.0, 1.0, far_depth > 0.5);
-    return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
 }
 
 // ---- airlight::scattering::lit ----

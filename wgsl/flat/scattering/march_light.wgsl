@@ -12,20 +12,6 @@
 // binding parameters: number of steps.
 // binding scattered: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility times fall-off 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -83,6 +69,20 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     // along / w, without dividing by a w that is zero or has rounded below it.
     let beyond = along >= limit * point.w;
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::light ----
@@ -188,32 +188,6 @@ fn one_minus_exp(x: f32) -> f32 {
     return select(1.0 - exp(-x), series, x < 0.3);
 }
 
-// ---- airlight::scattering::single_scatter ----
-// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
-// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
-
-/// A homogeneous medium. 32 bytes.
-struct Medium {
-    /// Single-scattering albedo, 0..1 for each colour.
-    albedo: vec3<f32>,
-    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
-    extinction: f32,
-    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
-    g: f32,
-    /// Rays end here if they meet nothing nearer, metres, positive.
-    distance_limit: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-}
-
-/// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or
-/// plain, 0..1; `distance`: length of the ray in metres; `cosine`: view direction times direction
-/// towards the light.
-fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
-    let phase = henyey_greenstein(cosine, medium.g);
-    return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
-}
-
 // ---- airlight::scattering::shadow_lookup ----
 // summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
 // source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
@@ -243,6 +217,32 @@ fn lit_by_shadow(shadow: Shadow, far_depth: f32) -> f32 {
     // Depth must grow away from the light for the comparison.
     let facing = select(-1.0, 1.0, far_depth > 0.5);
     return select(0.0, 1.0, shadow.blocked == 0u || shadow.depth * facing <= shadow.stored * facing);
+}
+
+// ---- airlight::scattering::single_scatter ----
+// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
+// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
+
+/// A homogeneous medium. 32 bytes.
+struct Medium {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
+    extinction: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// Rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
+/// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or
+/// plain, 0..1; `distance`: length of the ray in metres; `cosine`: view direction times direction
+/// towards the light.
+fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
+    let phase = henyey_greenstein(cosine, medium.g);
+    return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
 }
 
 // ---- airlight::scattering::lit ----

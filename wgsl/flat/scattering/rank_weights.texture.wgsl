@@ -248,35 +248,6 @@ fn rank_value(depth: f32, bits: u32) -> u32 {
     return u32(clamp(depth, 0.0, 1.0) * f32((1u << bits) - 1u) + 0.5);
 }
 
-// ---- airlight::scattering::visibility_rank_weights ----
-// summary: Mean of visibility times fall-off of a view ray over columns that have weights of their own, by one rank query.
-// source: none; a rank structure over a permutation whose points have weights: docs/src/rank.md explains it.
-
-/// Layers of `weights` before its planes: the steps of the columns of a block, the weight left of a block, and the steps
-/// of the ranks of a chunk. A component is a channel: colours, or the weight alone without these, and last the plain weight.
-const WEIGHT_HEADS: u32 = 3u;
-
-/// Channels for so many colours; 0 for the weight alone.
-fn weight_channels(colors: u32) -> u32 {
-    return colors + 1u;
-}
-
-/// First layer of the columns' planes of a channel.
-fn column_layer(channel: u32, weight_bits: u32) -> u32 {
-    return WEIGHT_HEADS + channel * (weight_bits / 4u);
-}
-
-/// First layer of the ranks' planes of a channel, which is not the plain weight next to colours.
-fn rank_layer(channel: u32, colors: u32, weight_bits: u32) -> u32 {
-    return WEIGHT_HEADS + (weight_channels(colors) + channel) * (weight_bits / 4u);
-}
-
-/// A weight in steps of which `greatest` is the last, of `bits` bits.
-fn weight_steps(weight: f32, greatest: f32, bits: u32) -> u32 {
-    let share = select(0.0, weight / greatest, greatest > 1e-37);
-    return u32(clamp(share, 0.0, 1.0) * f32((1u << bits) - 1u) + 0.5);
-}
-
 // ---- airlight::scattering::rank_sort ----
 // summary: Callback: sorts a row of the rectified map by counting, in workgroup memory, for the passes that make rank structures.
 // source: none; see scattering/visibility_rank and docs/src/rank.md.
@@ -399,6 +370,35 @@ fn write_planes(block: u32, row: u32, blocks: u32) {
     if BITS > 8u {
         textureStore(rank_planes, vec2<u32>(block, row), 2u, high);
     }
+}
+
+// ---- airlight::scattering::visibility_rank_weights ----
+// summary: Mean of visibility times fall-off of a view ray over columns that have weights of their own, by one rank query.
+// source: none; a rank structure over a permutation whose points have weights: docs/src/rank.md explains it.
+
+/// Layers of `weights` before its planes: the steps of the columns of a block, the weight left of a block, and the steps
+/// of the ranks of a chunk. A component is a channel: colours, or the weight alone without these, and last the plain weight.
+const WEIGHT_HEADS: u32 = 3u;
+
+/// Channels for so many colours; 0 for the weight alone.
+fn weight_channels(colors: u32) -> u32 {
+    return colors + 1u;
+}
+
+/// First layer of the columns' planes of a channel.
+fn column_layer(channel: u32, weight_bits: u32) -> u32 {
+    return WEIGHT_HEADS + channel * (weight_bits / 4u);
+}
+
+/// First layer of the ranks' planes of a channel, which is not the plain weight next to colours.
+fn rank_layer(channel: u32, colors: u32, weight_bits: u32) -> u32 {
+    return WEIGHT_HEADS + (weight_channels(colors) + channel) * (weight_bits / 4u);
+}
+
+/// A weight in steps of which `greatest` is the last, of `bits` bits.
+fn weight_steps(weight: f32, greatest: f32, bits: u32) -> u32 {
+    let share = select(0.0, weight / greatest, greatest > 1e-37);
+    return u32(clamp(share, 0.0, 1.0) * f32((1u << bits) - 1u) + 0.5);
 }
 
 // ---- scattering/rank_weights ----

@@ -43,24 +43,6 @@ fn one_minus_exp(x: f32) -> f32 {
     return select(1.0 - exp(-x), series, x < 0.3);
 }
 
-// ---- airlight::scattering::single_scatter ----
-// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
-// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
-
-/// A homogeneous medium. 32 bytes.
-struct Medium {
-    /// Single-scattering albedo, 0..1 for each colour.
-    albedo: vec3<f32>,
-    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
-    extinction: f32,
-    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
-    g: f32,
-    /// Rays end here if they meet nothing nearer, metres, positive.
-    distance_limit: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-}
-
 // ---- airlight::scattering::projective ----
 // summary: Projective rows around a directional light: view rays run along rows at constant depth after one matrix.
 // source: thesis 4.4.2; weights after 4.3.2, Eq. 4.8.
@@ -150,6 +132,24 @@ fn stretch_weight(extinction: f32, metres: f32) -> f32 {
     return select(one_minus_exp(depth) / max(extinction, 1e-30), metres * (1.0 - 0.5 * depth), depth < 1e-4);
 }
 
+// ---- airlight::scattering::single_scatter ----
+// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
+// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
+
+/// A homogeneous medium. 32 bytes.
+struct Medium {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
+    extinction: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// Rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
 // ---- airlight::scattering::column_weights ----
 // summary: Callback: what the columns of a row weigh in the means over it, and the light's fall-off on them.
 // source: thesis 4.3.2, Eq. 4.8 and 4.12; 4.4.2.
@@ -215,35 +215,6 @@ fn next_column(current: WeightedColumn, size: vec2<u32>) -> WeightedColumn {
 /// A depth, clamped to 0..1, as a whole number of `bits` bits.
 fn rank_value(depth: f32, bits: u32) -> u32 {
     return u32(clamp(depth, 0.0, 1.0) * f32((1u << bits) - 1u) + 0.5);
-}
-
-// ---- airlight::scattering::visibility_rank_weights ----
-// summary: Mean of visibility times fall-off of a view ray over columns that have weights of their own, by one rank query.
-// source: none; a rank structure over a permutation whose points have weights: docs/src/rank.md explains it.
-
-/// Layers of `weights` before its planes: the steps of the columns of a block, the weight left of a block, and the steps
-/// of the ranks of a chunk. A component is a channel: colours, or the weight alone without these, and last the plain weight.
-const WEIGHT_HEADS: u32 = 3u;
-
-/// Channels for so many colours; 0 for the weight alone.
-fn weight_channels(colors: u32) -> u32 {
-    return colors + 1u;
-}
-
-/// First layer of the columns' planes of a channel.
-fn column_layer(channel: u32, weight_bits: u32) -> u32 {
-    return WEIGHT_HEADS + channel * (weight_bits / 4u);
-}
-
-/// First layer of the ranks' planes of a channel, which is not the plain weight next to colours.
-fn rank_layer(channel: u32, colors: u32, weight_bits: u32) -> u32 {
-    return WEIGHT_HEADS + (weight_channels(colors) + channel) * (weight_bits / 4u);
-}
-
-/// A weight in steps of which `greatest` is the last, of `bits` bits.
-fn weight_steps(weight: f32, greatest: f32, bits: u32) -> u32 {
-    let share = select(0.0, weight / greatest, greatest > 1e-37);
-    return u32(clamp(share, 0.0, 1.0) * f32((1u << bits) - 1u) + 0.5);
 }
 
 // ---- airlight::scattering::rank_sort ----
@@ -368,6 +339,35 @@ fn write_planes(block: u32, row: u32, blocks: u32) {
     if BITS > 8u {
         textureStore(rank_planes, vec2<u32>(block, row), 2u, high);
     }
+}
+
+// ---- airlight::scattering::visibility_rank_weights ----
+// summary: Mean of visibility times fall-off of a view ray over columns that have weights of their own, by one rank query.
+// source: none; a rank structure over a permutation whose points have weights: docs/src/rank.md explains it.
+
+/// Layers of `weights` before its planes: the steps of the columns of a block, the weight left of a block, and the steps
+/// of the ranks of a chunk. A component is a channel: colours, or the weight alone without these, and last the plain weight.
+const WEIGHT_HEADS: u32 = 3u;
+
+/// Channels for so many colours; 0 for the weight alone.
+fn weight_channels(colors: u32) -> u32 {
+    return colors + 1u;
+}
+
+/// First layer of the columns' planes of a channel.
+fn column_layer(channel: u32, weight_bits: u32) -> u32 {
+    return WEIGHT_HEADS + channel * (weight_bits / 4u);
+}
+
+/// First layer of the ranks' planes of a channel, which is not the plain weight next to colours.
+fn rank_layer(channel: u32, colors: u32, weight_bits: u32) -> u32 {
+    return WEIGHT_HEADS + (weight_channels(colors) + channel) * (weight_bits / 4u);
+}
+
+/// A weight in steps of which `greatest` is the last, of `bits` bits.
+fn weight_steps(weight: f32, greatest: f32, bits: u32) -> u32 {
+    let share = select(0.0, weight / greatest, greatest > 1e-37);
+    return u32(clamp(share, 0.0, 1.0) * f32((1u << bits) - 1u) + 0.5);
 }
 
 // ---- scattering/rank_weights ----

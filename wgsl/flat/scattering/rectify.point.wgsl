@@ -226,6 +226,36 @@ fn depth_from_angle(slice: Slice, angle: f32) -> f32 {
     return guarded((angle - slice.angle_min) / max(slice.angle_max - slice.angle_min, 0.1 * LEAST_WIDTH));
 }
 
+// ---- airlight::scattering::shadow_lookup ----
+// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
+// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
+
+/// A texel of a shadow map, on the way from a point in the world.
+struct Shadow {
+    /// Depth of the point itself.
+    depth: f32,
+    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
+    stored: f32,
+    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
+    blocked: u32,
+}
+
+/// Like `shadow_in_map`, in the layer of an array that `place`, from `view_position`, names. `far_depth`: of an empty texel.
+fn shadow_in_view(maps: texture_2d_array<f32>, place: ViewPosition, far_depth: f32) -> Shadow {
+    let last = vec2<f32>(textureDimensions(maps)) - 1.0;
+    let texel = vec2<u32>(clamp(place.at.xy, vec2<f32>(0.0), last));
+    let stored = clamp(finite_or(textureLoad(maps, texel, place.view, 0).x, far_depth), 0.0, 1.0);
+    return Shadow(place.at.z, stored, select(0u, place.inside, stored != far_depth));
+}
+
+/// The blocker on the light ray through `point`, metres in the world, and 1 in w; w is 0 where there is none.
+/// `clip_from_world`, `world_from_clip`: of the map that `shadow` was read from.
+fn blocker_point(
+    shadow: Shadow, clip_from_world: mat4x4<f32>, world_from_clip: mat4x4<f32>, point: vec3<f32>
+) -> vec4<f32> {
+    return vec4<f32>(point_at_depth(clip_from_world, world_from_clip, point, shadow.stored), f32(shadow.blocked));
+}
+
 // ---- airlight::scattering::local_light ----
 // summary: Epipolar rows around a light at a point, spot or point light, and the light that air scatters along a view ray.
 // source: thesis 4.3.2 ("other light sources") and 4.4.1; W. Pegoraro and S. Parker, "An analytical solution to single scattering in homogeneous participating media" (2009); C. Kulla and M. Fajardo (2012) for equal angles.
@@ -275,36 +305,6 @@ fn ray_bounds(slice: LocalSlice) -> Slice {
 /// Light angle of a position along a row, radians. `unit`: 0..1 over the columns.
 fn light_angle_of_column(slice: LocalSlice, unit: f32) -> f32 {
     return mix(slice.light_angle_min, slice.light_angle_max, unit);
-}
-
-// ---- airlight::scattering::shadow_lookup ----
-// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
-// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
-
-/// A texel of a shadow map, on the way from a point in the world.
-struct Shadow {
-    /// Depth of the point itself.
-    depth: f32,
-    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
-    stored: f32,
-    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
-    blocked: u32,
-}
-
-/// Like `shadow_in_map`, in the layer of an array that `place`, from `view_position`, names. `far_depth`: of an empty texel.
-fn shadow_in_view(maps: texture_2d_array<f32>, place: ViewPosition, far_depth: f32) -> Shadow {
-    let last = vec2<f32>(textureDimensions(maps)) - 1.0;
-    let texel = vec2<u32>(clamp(place.at.xy, vec2<f32>(0.0), last));
-    let stored = clamp(finite_or(textureLoad(maps, texel, place.view, 0).x, far_depth), 0.0, 1.0);
-    return Shadow(place.at.z, stored, select(0u, place.inside, stored != far_depth));
-}
-
-/// The blocker on the light ray through `point`, metres in the world, and 1 in w; w is 0 where there is none.
-/// `clip_from_world`, `world_from_clip`: of the map that `shadow` was read from.
-fn blocker_point(
-    shadow: Shadow, clip_from_world: mat4x4<f32>, world_from_clip: mat4x4<f32>, point: vec3<f32>
-) -> vec4<f32> {
-    return vec4<f32>(point_at_depth(clip_from_world, world_from_clip, point, shadow.stored), f32(shadow.blocked));
 }
 
 // ---- scattering/rectify ----

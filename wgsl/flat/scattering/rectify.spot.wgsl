@@ -164,6 +164,38 @@ fn depth_from_angle(slice: Slice, angle: f32) -> f32 {
     return guarded((angle - slice.angle_min) / max(slice.angle_max - slice.angle_min, 0.1 * LEAST_WIDTH));
 }
 
+// ---- airlight::scattering::shadow_lookup ----
+// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
+// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
+
+/// A texel of a shadow map, on the way from a point in the world.
+struct Shadow {
+    /// Depth of the point itself.
+    depth: f32,
+    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
+    stored: f32,
+    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
+    blocked: u32,
+}
+
+/// The shadow map's texel on the light ray through `point`, metres in the world. `map`: a depth format or r32float.
+fn shadow_in_map(map: texture_2d<f32>, light: Light, point: vec3<f32>) -> Shadow {
+    let size = vec2<f32>(textureDimensions(map));
+    let at = shadow_position(light, size, point);
+    let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
+    let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
+    let stored = clamp(finite_or(textureLoad(map, texel, 0).x, light.far_depth), 0.0, 1.0);
+    return Shadow(at.z, stored, select(0u, 1u, inside && stored != light.far_depth));
+}
+
+/// The blocker on the light ray through `point`, metres in the world, and 1 in w; w is 0 where there is none.
+/// `clip_from_world`, `world_from_clip`: of the map that `shadow` was read from.
+fn blocker_point(
+    shadow: Shadow, clip_from_world: mat4x4<f32>, world_from_clip: mat4x4<f32>, point: vec3<f32>
+) -> vec4<f32> {
+    return vec4<f32>(point_at_depth(clip_from_world, world_from_clip, point, shadow.stored), f32(shadow.blocked));
+}
+
 // ---- airlight::scattering::local_light ----
 // summary: Epipolar rows around a light at a point, spot or point light, and the light that air scatters along a view ray.
 // source: thesis 4.3.2 ("other light sources") and 4.4.1; W. Pegoraro and S. Parker, "An analytical solution to single scattering in homogeneous participating media" (2009); C. Kulla and M. Fajardo (2012) for equal angles.
@@ -213,38 +245,6 @@ fn ray_bounds(slice: LocalSlice) -> Slice {
 /// Light angle of a position along a row, radians. `unit`: 0..1 over the columns.
 fn light_angle_of_column(slice: LocalSlice, unit: f32) -> f32 {
     return mix(slice.light_angle_min, slice.light_angle_max, unit);
-}
-
-// ---- airlight::scattering::shadow_lookup ----
-// summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
-// source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
-
-/// A texel of a shadow map, on the way from a point in the world.
-struct Shadow {
-    /// Depth of the point itself.
-    depth: f32,
-    /// Depth of the blocker, 0..1; that of an empty texel where there is none.
-    stored: f32,
-    /// 1 where there is a blocker on this light ray, nearer to the light or not, else 0.
-    blocked: u32,
-}
-
-/// The shadow map's texel on the light ray through `point`, metres in the world. `map`: a depth format or r32float.
-fn shadow_in_map(map: texture_2d<f32>, light: Light, point: vec3<f32>) -> Shadow {
-    let size = vec2<f32>(textureDimensions(map));
-    let at = shadow_position(light, size, point);
-    let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
-    let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
-    let stored = clamp(finite_or(textureLoad(map, texel, 0).x, light.far_depth), 0.0, 1.0);
-    return Shadow(at.z, stored, select(0u, 1u, inside && stored != light.far_depth));
-}
-
-/// The blocker on the light ray through `point`, metres in the world, and 1 in w; w is 0 where there is none.
-/// `clip_from_world`, `world_from_clip`: of the map that `shadow` was read from.
-fn blocker_point(
-    shadow: Shadow, clip_from_world: mat4x4<f32>, world_from_clip: mat4x4<f32>, point: vec3<f32>
-) -> vec4<f32> {
-    return vec4<f32>(point_at_depth(clip_from_world, world_from_clip, point, shadow.stored), f32(shadow.blocked));
 }
 
 // ---- scattering/rectify ----

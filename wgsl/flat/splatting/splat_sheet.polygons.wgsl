@@ -152,25 +152,6 @@ fn in_exact_parts(value: f32) -> vec4<f32> {
     return vec4<f32>(coarse, medium, fine, 0.0);
 }
 
-// ---- airlight::splatting::surface_shadow ----
-// summary: Which part of a sheet lies before a surface, and what arrives of the light at a point where surfaces block it.
-// source: Zhang and Crawfis, 4.1, Fig. 6 and 7, Table 1.
-
-/// Height where a ray meets no surface, metres.
-const NO_SURFACE: f32 = 1e30;
-
-/// Whether there is a surface at a height.
-fn is_surface(height: f32) -> bool {
-    return height < 0.5 * NO_SURFACE;
-}
-
-/// Heights between which a ray that climbs or descends sees a sheet, metres: up to the surface at `surface`, NO_SURFACE where there is none.
-fn heights_before_surface(sheets: Sheets, index: u32, climbs: bool, surface: f32) -> vec2<f32> {
-    let heights = sheet_heights(sheets, index);
-    let cut = select(max(heights, vec2<f32>(surface)), min(heights, vec2<f32>(surface)), climbs);
-    return select(heights, cut, is_surface(surface));
-}
-
 // ---- airlight::splatting::splat ----
 // summary: Splats: voxels above a threshold, where they lie, and the quad that covers one in a picture.
 // source: Zhang and Crawfis, 2.1 and 4.1, steps 3 and 12 to 14.
@@ -240,6 +221,25 @@ fn quad_around(camera: Camera, volume: SplatVolume, middle: vec3<f32>, radius: f
     let sides = vec2<f32>(reach_along(volume, right, radius), reach_along(volume, top, radius)) * larger;
     let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
     return QuadCorner(middle + right * (sides.x * corner.x) + top * (sides.y * corner.y), before);
+}
+
+// ---- airlight::splatting::surface_shadow ----
+// summary: Which part of a sheet lies before a surface, and what arrives of the light at a point where surfaces block it.
+// source: Zhang and Crawfis, 4.1, Fig. 6 and 7, Table 1.
+
+/// Height where a ray meets no surface, metres.
+const NO_SURFACE: f32 = 1e30;
+
+/// Whether there is a surface at a height.
+fn is_surface(height: f32) -> bool {
+    return height < 0.5 * NO_SURFACE;
+}
+
+/// Heights between which a ray that climbs or descends sees a sheet, metres: up to the surface at `surface`, NO_SURFACE where there is none.
+fn heights_before_surface(sheets: Sheets, index: u32, climbs: bool, surface: f32) -> vec2<f32> {
+    let heights = sheet_heights(sheets, index);
+    let cut = select(max(heights, vec2<f32>(surface)), min(heights, vec2<f32>(surface)), climbs);
+    return select(heights, cut, is_surface(surface));
 }
 
 // ---- splatting/splat_sheet ----

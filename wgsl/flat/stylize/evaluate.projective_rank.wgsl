@@ -23,23 +23,14 @@
 // binding transfer_map: the function, premultiplied linear RGBA, any float format that filters.
 // binding transfer_sampler: linear, clamped to the edge.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
 }
 
 // ---- airlight::core::camera ----
@@ -101,14 +92,23 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
 }
 
-// ---- airlight::core::arc_cosine ----
-// summary: The angle whose cosine is given, as exact as its cosine.
-// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
-fn arc_cosine(cosine: f32) -> f32 {
-    let held = clamp(cosine, -1.0, 1.0);
-    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -190,32 +190,6 @@ fn one_minus_exp(x: f32) -> f32 {
     const sixth: f32 = 1.0 / 6.0;
     let series = x * (1.0 - x * 0.5 * (1.0 - x * third * (1.0 - x * 0.25 * (1.0 - x * 0.2 * (1.0 - x * sixth)))));
     return select(1.0 - exp(-x), series, x < 0.3);
-}
-
-// ---- airlight::scattering::single_scatter ----
-// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
-// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
-
-/// A homogeneous medium. 32 bytes.
-struct Medium {
-    /// Single-scattering albedo, 0..1 for each colour.
-    albedo: vec3<f32>,
-    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
-    extinction: f32,
-    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
-    g: f32,
-    /// Rays end here if they meet nothing nearer, metres, positive.
-    distance_limit: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-}
-
-/// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or
-/// plain, 0..1; `distance`: length of the ray in metres; `cosine`: view direction times direction
-/// towards the light.
-fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
-    let phase = henyey_greenstein(cosine, medium.g);
-    return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
 }
 
 // ---- airlight::scattering::projective ----
@@ -395,6 +369,55 @@ fn region_of(texels: f32, width: u32, regions: u32) -> u32 {
 /// First texel of a region; of the region after the last, the width.
 fn region_begin(region: u32, width: u32, regions: u32) -> u32 {
     return (region * width + regions - 1u) / regions;
+}
+
+// ---- airlight::scattering::scattered_ray ----
+// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
+// source: thesis 4.3.3, Listing 4.4.
+
+/// What stands for infinity, metres.
+const FARTHEST: f32 = 1e15;
+
+/// A view ray and the light that the air scatters into it.
+struct ScatteredRay {
+    /// Linear RGB radiance at the eye, at most 65504.
+    radiance: vec3<f32>,
+    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
+    /// colours.
+    visibility: f32,
+    /// Where it passes through the picture.
+    ndc: vec2<f32>,
+    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
+    /// the medium may end before.
+    distance: f32,
+    /// View direction times the unit vector at its origin towards the light, -1..1.
+    cosine: f32,
+}
+
+// ---- airlight::scattering::single_scatter ----
+// summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
+// source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
+
+/// A homogeneous medium. 32 bytes.
+struct Medium {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Extinction coefficient in 1/m, not negative; zero is a clear picture.
+    extinction: f32,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// Rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+}
+
+/// Radiance scattered into a view ray. `visibility`: mean over the ray, weighted by transmittance or
+/// plain, 0..1; `distance`: length of the ray in metres; `cosine`: view direction times direction
+/// towards the light.
+fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance: f32, visibility: f32) -> vec3<f32> {
+    let phase = henyey_greenstein(cosine, medium.g);
+    return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
 }
 
 // ---- airlight::scattering::visibility_rank ----
@@ -637,29 +660,6 @@ fn mixed_means(at: Prefix, depth: f32) -> vec3<f32> {
 /// Mean visibility of a stretch at the depth of a ray, 0..1.
 fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
     return mixed_means(at, depth).x;
-}
-
-// ---- airlight::scattering::scattered_ray ----
-// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
-// source: thesis 4.3.3, Listing 4.4.
-
-/// What stands for infinity, metres.
-const FARTHEST: f32 = 1e15;
-
-/// A view ray and the light that the air scatters into it.
-struct ScatteredRay {
-    /// Linear RGB radiance at the eye, at most 65504.
-    radiance: vec3<f32>,
-    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
-    /// colours.
-    visibility: f32,
-    /// Where it passes through the picture.
-    ndc: vec2<f32>,
-    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
-    /// the medium may end before.
-    distance: f32,
-    /// View direction times the unit vector at its origin towards the light, -1..1.
-    cosine: f32,
 }
 
 // ---- airlight::scattering::evaluated_projective ----

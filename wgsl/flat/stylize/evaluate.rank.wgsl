@@ -23,23 +23,14 @@
 // binding transfer_map: the function, premultiplied linear RGBA, any float format that filters.
 // binding transfer_sampler: linear, clamped to the edge.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
 }
 
 // ---- airlight::core::camera ----
@@ -84,14 +75,23 @@ fn perspective_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     return Ray(camera.eye, normalize(far.xyz - camera.eye * far.w));
 }
 
-// ---- airlight::core::arc_cosine ----
-// summary: The angle whose cosine is given, as exact as its cosine.
-// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
-fn arc_cosine(cosine: f32) -> f32 {
-    let held = clamp(cosine, -1.0, 1.0);
-    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -187,6 +187,40 @@ fn one_minus_exp(x: f32) -> f32 {
     const sixth: f32 = 1.0 / 6.0;
     let series = x * (1.0 - x * 0.5 * (1.0 - x * third * (1.0 - x * 0.25 * (1.0 - x * 0.2 * (1.0 - x * sixth)))));
     return select(1.0 - exp(-x), series, x < 0.3);
+}
+
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Mean visibility of a view ray over `steps` equal steps through a standard shadow map, weighted by
+/// transmittance. `origin`, `direction`: of the ray in the world; `distance`: its length in metres;
+/// `extinction` in 1/m, zero for the plain mean; `offset`: 0..1, where in each step the sample lies.
+/// Outside the map everything is lit.
+fn march_shadow_map(
+    map: texture_2d<f32>, light: Light, origin: vec3<f32>, direction: vec3<f32>,
+    distance: f32, extinction: f32, steps: u32, offset: f32
+) -> f32 {
+    let size = vec2<f32>(textureDimensions(map));
+    // A directional light's matrix is affine: the ray is a straight line in texels and depth.
+    let first = shadow_position(light, size, origin);
+    let last = shadow_position(light, size, origin + direction * distance);
+    let stride = (last - first) / f32(max(steps, 1u));
+    // Depth must grow away from the light for the comparison.
+    let facing = select(-1.0, 1.0, light.far_depth > 0.5);
+    let ratio = exp(-extinction * distance / f32(max(steps, 1u)));
+    var sum = 0.0;
+    var total = 0.0;
+    for (var left = steps; left > 0u; left--) {
+        let at = first + stride * (f32(left) - 1.0 + offset);
+        let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
+        let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
+        let stored = finite_or(textureLoad(map, texel, 0).x, light.far_depth);
+        let lit = !inside || stored == light.far_depth || at.z * facing <= stored * facing;
+        sum = sum * ratio + select(0.0, 1.0, lit);
+        total = total * ratio + 1.0;
+    }
+    return sum / max(total, 1.0);
 }
 
 // ---- airlight::scattering::rectify ----
@@ -310,6 +344,45 @@ fn depth_from_ray(slice: Slice, ray: EpipolarRay) -> f32 {
     return clamp(depth_from_angle(slice, ray.angle), GUARD, 1.0 - GUARD);
 }
 
+// ---- airlight::scattering::rows ----
+// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
+// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
+
+/// A view ray in a rectified map.
+struct RowRay {
+    /// Row, fractional; row j is at the value j.
+    row: f32,
+    /// Texels before the ray begins, fractional.
+    begin: f32,
+    /// Texels before the ray ends, fractional.
+    end: f32,
+    /// Depth of the ray, 0..1.
+    depth: f32,
+}
+
+// ---- airlight::scattering::scattered_ray ----
+// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
+// source: thesis 4.3.3, Listing 4.4.
+
+/// What stands for infinity, metres.
+const FARTHEST: f32 = 1e15;
+
+/// A view ray and the light that the air scatters into it.
+struct ScatteredRay {
+    /// Linear RGB radiance at the eye, at most 65504.
+    radiance: vec3<f32>,
+    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
+    /// colours.
+    visibility: f32,
+    /// Where it passes through the picture.
+    ndc: vec2<f32>,
+    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
+    /// the medium may end before.
+    distance: f32,
+    /// View direction times the unit vector at its origin towards the light, -1..1.
+    cosine: f32,
+}
+
 // ---- airlight::scattering::single_scatter ----
 // summary: Single scattering of a directional light in a homogeneous medium, given the visibility along a ray.
 // source: thesis 4.2.1, Eq. 4.1 and 4.2; 4.3.2, Eq. 4.8 and 4.9; Listing 4.4.
@@ -336,40 +409,6 @@ fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance
     return medium.albedo * light_radiance * (phase * one_minus_exp(medium.extinction * distance) * visibility);
 }
 
-// ---- airlight::scattering::march ----
-// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
-// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
-
-/// Mean visibility of a view ray over `steps` equal steps through a standard shadow map, weighted by
-/// transmittance. `origin`, `direction`: of the ray in the world; `distance`: its length in metres;
-/// `extinction` in 1/m, zero for the plain mean; `offset`: 0..1, where in each step the sample lies.
-/// Outside the map everything is lit.
-fn march_shadow_map(
-    map: texture_2d<f32>, light: Light, origin: vec3<f32>, direction: vec3<f32>,
-    distance: f32, extinction: f32, steps: u32, offset: f32
-) -> f32 {
-    let size = vec2<f32>(textureDimensions(map));
-    // A directional light's matrix is affine: the ray is a straight line in texels and depth.
-    let first = shadow_position(light, size, origin);
-    let last = shadow_position(light, size, origin + direction * distance);
-    let stride = (last - first) / f32(max(steps, 1u));
-    // Depth must grow away from the light for the comparison.
-    let facing = select(-1.0, 1.0, light.far_depth > 0.5);
-    let ratio = exp(-extinction * distance / f32(max(steps, 1u)));
-    var sum = 0.0;
-    var total = 0.0;
-    for (var left = steps; left > 0u; left--) {
-        let at = first + stride * (f32(left) - 1.0 + offset);
-        let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
-        let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));
-        let stored = finite_or(textureLoad(map, texel, 0).x, light.far_depth);
-        let lit = !inside || stored == light.far_depth || at.z * facing <= stored * facing;
-        sum = sum * ratio + select(0.0, 1.0, lit);
-        total = total * ratio + 1.0;
-    }
-    return sum / max(total, 1.0);
-}
-
 // ---- airlight::scattering::lit ----
 // summary: Callback: the light that reaches a point, and its mean over a view ray by marching, from a pass' bindings.
 // source: thesis 2.4.4, Eq. 2.20; 4.2.1; C. Kulla and M. Fajardo, "Importance sampling techniques for path tracing in participating media" (2012).
@@ -381,22 +420,6 @@ fn marched_visibility(
     light: Light, origin: vec3<f32>, direction: vec3<f32>, distance: f32, extinction: f32, steps: u32, offset: f32
 ) -> f32 {
     return march_shadow_map(shadow_map, light, origin, direction, distance, extinction, steps, offset);
-}
-
-// ---- airlight::scattering::rows ----
-// summary: Where a view ray lies in a rectified map, and how the means of a row's regions are put together.
-// source: thesis 4.3.3 (regions), 4.4.2 (near plane).
-
-/// A view ray in a rectified map.
-struct RowRay {
-    /// Row, fractional; row j is at the value j.
-    row: f32,
-    /// Texels before the ray begins, fractional.
-    begin: f32,
-    /// Texels before the ray ends, fractional.
-    end: f32,
-    /// Depth of the ray, 0..1.
-    depth: f32,
 }
 
 // ---- airlight::scattering::visibility_rank ----
@@ -558,29 +581,6 @@ fn mixed_means(at: Prefix, depth: f32) -> vec3<f32> {
 /// Mean visibility of a stretch at the depth of a ray, 0..1.
 fn prefix_visibility(at: Prefix, depth: f32) -> f32 {
     return mixed_means(at, depth).x;
-}
-
-// ---- airlight::scattering::scattered_ray ----
-// summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
-// source: thesis 4.3.3, Listing 4.4.
-
-/// What stands for infinity, metres.
-const FARTHEST: f32 = 1e15;
-
-/// A view ray and the light that the air scatters into it.
-struct ScatteredRay {
-    /// Linear RGB radiance at the eye, at most 65504.
-    radiance: vec3<f32>,
-    /// Mean visibility of the light along it, 0..1; where columns have a fall-off, the mean of that times visibility over the
-    /// colours.
-    visibility: f32,
-    /// Where it passes through the picture.
-    ndc: vec2<f32>,
-    /// Its length in metres up to the surface, from the eye or the near plane of an orthographic camera, at most FARTHEST;
-    /// the medium may end before.
-    distance: f32,
-    /// View direction times the unit vector at its origin towards the light, -1..1.
-    cosine: f32,
 }
 
 // ---- airlight::scattering::evaluated ----

@@ -14,18 +14,14 @@
 // binding shadow_map: depth of the standard shadow map; with VISIBLE_DEPTH, without SHADOW_ARRAY.
 // binding constraints: whose positions are written where they name a pixel; with PICK only.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
 }
 
 // ---- airlight::core::camera ----
@@ -79,14 +75,18 @@ fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     return Ray(origin, normalize(far.xyz - select(camera.eye * far.w, near.xyz, parallel)));
 }
 
-// ---- airlight::core::arc_cosine ----
-// summary: The angle whose cosine is given, as exact as its cosine.
-// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
-fn arc_cosine(cosine: f32) -> f32 {
-    let held = clamp(cosine, -1.0, 1.0);
-    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::light ----

@@ -13,23 +13,14 @@
 // binding transfer_sampler: linear, clamped to the edge; without PICK.
 // binding restyled: out of the compute entry point (the fragment entry point returns it), rgba16float: linear RGB radiance, and in alpha the mean visibility 0..1.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
-/// Like `finite_or`, each component by itself.
-fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
-    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
 }
 
 // ---- airlight::core::camera ----
@@ -83,14 +74,23 @@ fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     return Ray(origin, normalize(far.xyz - select(camera.eye * far.w, near.xyz, parallel)));
 }
 
-// ---- airlight::core::arc_cosine ----
-// summary: The angle whose cosine is given, as exact as its cosine.
-// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
-fn arc_cosine(cosine: f32) -> f32 {
-    let held = clamp(cosine, -1.0, 1.0);
-    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::core::light ----

@@ -18,20 +18,6 @@
 // binding order: out, the number of each particle.
 // binding transmittances: out, from the light to each, 0..1; -1 for what is dropped.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -55,6 +41,20 @@ struct Camera {
     far_depth: f32,
     /// PERSPECTIVE or ORTHOGRAPHIC.
     projection: u32,
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::light ----
@@ -231,6 +231,32 @@ fn ascending_key(value: f32) -> u32 {
     return bits ^ select(0x80000000u, 0xffffffffu, bits >= 0x80000000u);
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
+/// The range d of the map, metres: how far apart depths 0 and 1 are.
+fn map_range(light: Light) -> f32 {
+    return length(light.world_from_clip[2].xyz);
+}
+
+/// Texels to the metre, across and down the map, whose sides lie across the light.
+fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
+    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
+    return 0.5 * size / max(across, vec2<f32>(1e-12));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -272,51 +298,6 @@ fn mixed_texel(map: texture_2d_array<f32>, at: Footprint, layer: u32) -> vec4<f3
     let third = textureLoad(map, vec2<u32>(at.columns.x, at.rows.y), layer, 0);
     let fourth = textureLoad(map, vec2<u32>(at.columns.y, at.rows.y), layer, 0);
     return finite_parts(mix(mix(first, second, at.share.x), mix(third, fourth, at.share.x), at.share.y));
-}
-
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
-
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
-}
-
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
-}
-
-/// The range d of the map, metres: how far apart depths 0 and 1 are.
-fn map_range(light: Light) -> f32 {
-    return length(light.world_from_clip[2].xyz);
-}
-
-/// Texels to the metre, across and down the map, whose sides lie across the light.
-fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
-    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
-    return 0.5 * size / max(across, vec2<f32>(1e-12));
-}
-
-// ---- airlight::transmittance::transmittance_moments ----
-// summary: Transmittance from moments of optical depth along a light ray: six of powers, or two complex trigonometric ones.
-// source: Muenstermann, Krumpen, Klein, Peters, "Moment-based order-independent transparency" (PACMCGIT 1(1), 2018).
-
-/// Part of the optical depth right at a depth that counts as before it.
-const OVERESTIMATION: f32 = 0.25;
-/// Least optical depth that has a distribution.
-const LEAST_DEPTH: f32 = 1e-20;
-
-/// Transmittance 0..1 from the near side to `depth` 0..1. `first`, `second`: the layers.
-fn power_transmittance(first: vec4<f32>, second: vec4<f32>, depth: f32) -> f32 {
-    let total = max(first.x, 0.0);
-    let scale = 1.0 / max(total, LEAST_DEPTH);
-    let moments = Moments(first.yzw * scale, second.xyz * scale);
-    let beyond = share_bounds(moments, clamp(2.0 * depth - 1.0, -1.0, 1.0));
-    let before = 1.0 - beyond.y + OVERESTIMATION * (beyond.y - beyond.x);
-    return exp(-total * clamp(before, 0.0, 1.0));
 }
 
 // ---- airlight::transmittance::particles ----
@@ -406,6 +387,25 @@ fn particle_defect(particle: Particle, ball: Ball, size: vec2<f32>) -> u32 {
 fn view_depth(camera: Camera, point: vec3<f32>) -> f32 {
     let clip = camera.clip_from_world * vec4<f32>(point, 1.0);
     return select(clip.w, clip.z * (camera.far_depth - camera.near_depth), camera.projection == ORTHOGRAPHIC);
+}
+
+// ---- airlight::transmittance::transmittance_moments ----
+// summary: Transmittance from moments of optical depth along a light ray: six of powers, or two complex trigonometric ones.
+// source: Muenstermann, Krumpen, Klein, Peters, "Moment-based order-independent transparency" (PACMCGIT 1(1), 2018).
+
+/// Part of the optical depth right at a depth that counts as before it.
+const OVERESTIMATION: f32 = 0.25;
+/// Least optical depth that has a distribution.
+const LEAST_DEPTH: f32 = 1e-20;
+
+/// Transmittance 0..1 from the near side to `depth` 0..1. `first`, `second`: the layers.
+fn power_transmittance(first: vec4<f32>, second: vec4<f32>, depth: f32) -> f32 {
+    let total = max(first.x, 0.0);
+    let scale = 1.0 / max(total, LEAST_DEPTH);
+    let moments = Moments(first.yzw * scale, second.xyz * scale);
+    let beyond = share_bounds(moments, clamp(2.0 * depth - 1.0, -1.0, 1.0));
+    let before = 1.0 - beyond.y + OVERESTIMATION * (beyond.y - beyond.x);
+    return exp(-total * clamp(before, 0.0, 1.0));
 }
 
 // ---- airlight::transmittance::transmittance_map ----

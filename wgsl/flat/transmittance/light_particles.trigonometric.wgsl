@@ -18,18 +18,14 @@
 // binding order: out, the number of each particle.
 // binding transmittances: out, from the light to each, 0..1; -1 for what is dropped.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
 }
 
 // ---- airlight::core::camera ----
@@ -57,14 +53,18 @@ struct Camera {
     projection: u32,
 }
 
-// ---- airlight::core::arc_cosine ----
-// summary: The angle whose cosine is given, as exact as its cosine.
-// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
-fn arc_cosine(cosine: f32) -> f32 {
-    let held = clamp(cosine, -1.0, 1.0);
-    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -126,6 +126,32 @@ fn ascending_key(value: f32) -> u32 {
     return bits ^ select(0x80000000u, 0xffffffffu, bits >= 0x80000000u);
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
+/// The range d of the map, metres: how far apart depths 0 and 1 are.
+fn map_range(light: Light) -> f32 {
+    return length(light.world_from_clip[2].xyz);
+}
+
+/// Texels to the metre, across and down the map, whose sides lie across the light.
+fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
+    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
+    return 0.5 * size / max(across, vec2<f32>(1e-12));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -169,30 +195,93 @@ fn mixed_texel(map: texture_2d_array<f32>, at: Footprint, layer: u32) -> vec4<f3
     return finite_parts(mix(mix(first, second, at.share.x), mix(third, fourth, at.share.x), at.share.y));
 }
 
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
+// ---- airlight::transmittance::particles ----
+// summary: Particles of a medium as seen from a light: which are dropped, and the stretch of each that a light ray passes.
+// source: Gautron et al., "Extinction transmittance maps" (2011), Eq. 1: depth x_i and traversal distance d_i of each.
 
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+/// A particle. 32 bytes.
+struct Particle {
+    /// Of the middle, metres in the world.
+    position: vec3<f32>,
+    /// Metres, positive, at most the range of the map.
+    radius: f32,
+    /// 1/m, from 0 up.
+    extinction: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+    reserved_c: f32,
 }
 
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
+/// The map that particles are splatted into. 16 bytes.
+struct SplatTarget {
+    /// Columns and rows.
+    size: vec2<f32>,
+    /// Number of particles.
+    count: u32,
+    reserved: u32,
 }
 
-/// The range d of the map, metres: how far apart depths 0 and 1 are.
-fn map_range(light: Light) -> f32 {
-    return length(light.world_from_clip[2].xyz);
+/// Nothing is wrong with it.
+const PARTICLE_KEPT: u32 = 0u;
+/// A number of it is NaN or infinite.
+const PARTICLE_NOT_FINITE: u32 = 1u;
+/// Its radius is not positive, or greater than the range of the map.
+const PARTICLE_RADIUS: u32 = 2u;
+/// Its extinction is negative.
+const PARTICLE_EXTINCTION: u32 = 3u;
+/// No part of it lies in the map.
+const PARTICLE_OUTSIDE: u32 = 4u;
+/// In texels. Every ball meets the middle of a texel; of the radii below 1.7 this one keeps the sum best.
+const LEAST_RADIUS: f32 = 1.25;
+/// Greatest optical depth of a stretch: a transmittance of 1e-28.
+const GREATEST_DEPTH: f32 = 64.0;
+
+/// A particle in the map.
+struct Ball {
+    /// Of the middle: texels across and down.
+    middle: vec2<f32>,
+    /// Half axes in texels.
+    reach: vec2<f32>,
+    /// Depth of the middle, 0..1 over the range.
+    depth: f32,
+    /// Radius over the range.
+    radius: f32,
+    /// Optical depth along a ray through the middle.
+    optical_depth: f32,
 }
 
-/// Texels to the metre, across and down the map, whose sides lie across the light.
-fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
-    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
-    return 0.5 * size / max(across, vec2<f32>(1e-12));
+/// The ball in a map of `size` texels.
+fn ball_in_map(particle: Particle, light: Light, size: vec2<f32>) -> Ball {
+    let at = map_position(light, size, particle.position);
+    let own = particle.radius * texels_per_metre(light, size);
+    let reach = max(own, vec2<f32>(LEAST_RADIUS));
+    let thinned = (own.x / reach.x) * (own.y / reach.y);
+    let optical_depth = min(2.0 * particle.radius * particle.extinction * thinned, GREATEST_DEPTH);
+    return Ball(at.xy, reach, at.z, particle.radius / max(map_range(light), 1e-12), optical_depth);
+}
+
+/// Why a particle is dropped, one of PARTICLE_*. `ball`: the particle in a map of `size` texels.
+fn particle_defect(particle: Particle, ball: Ball, size: vec2<f32>) -> u32 {
+    let known = is_finite(particle.position.x) && is_finite(particle.position.y) && is_finite(particle.position.z)
+        && is_finite(particle.radius) && is_finite(particle.extinction);
+    let placed = is_finite(ball.middle.x) && is_finite(ball.middle.y) && is_finite(ball.depth);
+    let beside = any(ball.middle + ball.reach < vec2<f32>(0.0)) || any(ball.middle - ball.reach > size);
+    let outside = beside || ball.depth + ball.radius <= 0.0 || ball.depth - ball.radius >= 1.0;
+    var defect = select(PARTICLE_KEPT, PARTICLE_OUTSIDE, outside || !placed);
+    defect = select(defect, PARTICLE_EXTINCTION, particle.extinction < 0.0);
+    defect = select(defect, PARTICLE_RADIUS, !(particle.radius > 0.0) || ball.radius > 1.0);
+    return select(PARTICLE_NOT_FINITE, defect, known);
+}
+
+// ---- airlight::transmittance::seen_particles ----
+// summary: Particles of a medium as seen from the eye: their order, outlines, and what of them a view ray passes.
+// source: the balls of transmittance/particles, seen along view rays instead of light rays.
+
+/// A number that grows with the depth of a point, metres in the world, before a camera; for a perspective one the
+/// distance from the plane of the eye.
+fn view_depth(camera: Camera, point: vec3<f32>) -> f32 {
+    let clip = camera.clip_from_world * vec4<f32>(point, 1.0);
+    return select(clip.w, clip.z * (camera.far_depth - camera.near_depth), camera.projection == ORTHOGRAPHIC);
 }
 
 // ---- airlight::transmittance::transmittance_moments ----
@@ -290,95 +379,6 @@ fn trigonometric_transmittance(first: vec4<f32>, second: vec4<f32>, depth: f32) 
         left -= weight;
     }
     return exp(-total * clamp(before, 0.0, 1.0));
-}
-
-// ---- airlight::transmittance::particles ----
-// summary: Particles of a medium as seen from a light: which are dropped, and the stretch of each that a light ray passes.
-// source: Gautron et al., "Extinction transmittance maps" (2011), Eq. 1: depth x_i and traversal distance d_i of each.
-
-/// A particle. 32 bytes.
-struct Particle {
-    /// Of the middle, metres in the world.
-    position: vec3<f32>,
-    /// Metres, positive, at most the range of the map.
-    radius: f32,
-    /// 1/m, from 0 up.
-    extinction: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-    reserved_c: f32,
-}
-
-/// The map that particles are splatted into. 16 bytes.
-struct SplatTarget {
-    /// Columns and rows.
-    size: vec2<f32>,
-    /// Number of particles.
-    count: u32,
-    reserved: u32,
-}
-
-/// Nothing is wrong with it.
-const PARTICLE_KEPT: u32 = 0u;
-/// A number of it is NaN or infinite.
-const PARTICLE_NOT_FINITE: u32 = 1u;
-/// Its radius is not positive, or greater than the range of the map.
-const PARTICLE_RADIUS: u32 = 2u;
-/// Its extinction is negative.
-const PARTICLE_EXTINCTION: u32 = 3u;
-/// No part of it lies in the map.
-const PARTICLE_OUTSIDE: u32 = 4u;
-/// In texels. Every ball meets the middle of a texel; of the radii below 1.7 this one keeps the sum best.
-const LEAST_RADIUS: f32 = 1.25;
-/// Greatest optical depth of a stretch: a transmittance of 1e-28.
-const GREATEST_DEPTH: f32 = 64.0;
-
-/// A particle in the map.
-struct Ball {
-    /// Of the middle: texels across and down.
-    middle: vec2<f32>,
-    /// Half axes in texels.
-    reach: vec2<f32>,
-    /// Depth of the middle, 0..1 over the range.
-    depth: f32,
-    /// Radius over the range.
-    radius: f32,
-    /// Optical depth along a ray through the middle.
-    optical_depth: f32,
-}
-
-/// The ball in a map of `size` texels.
-fn ball_in_map(particle: Particle, light: Light, size: vec2<f32>) -> Ball {
-    let at = map_position(light, size, particle.position);
-    let own = particle.radius * texels_per_metre(light, size);
-    let reach = max(own, vec2<f32>(LEAST_RADIUS));
-    let thinned = (own.x / reach.x) * (own.y / reach.y);
-    let optical_depth = min(2.0 * particle.radius * particle.extinction * thinned, GREATEST_DEPTH);
-    return Ball(at.xy, reach, at.z, particle.radius / max(map_range(light), 1e-12), optical_depth);
-}
-
-/// Why a particle is dropped, one of PARTICLE_*. `ball`: the particle in a map of `size` texels.
-fn particle_defect(particle: Particle, ball: Ball, size: vec2<f32>) -> u32 {
-    let known = is_finite(particle.position.x) && is_finite(particle.position.y) && is_finite(particle.position.z)
-        && is_finite(particle.radius) && is_finite(particle.extinction);
-    let placed = is_finite(ball.middle.x) && is_finite(ball.middle.y) && is_finite(ball.depth);
-    let beside = any(ball.middle + ball.reach < vec2<f32>(0.0)) || any(ball.middle - ball.reach > size);
-    let outside = beside || ball.depth + ball.radius <= 0.0 || ball.depth - ball.radius >= 1.0;
-    var defect = select(PARTICLE_KEPT, PARTICLE_OUTSIDE, outside || !placed);
-    defect = select(defect, PARTICLE_EXTINCTION, particle.extinction < 0.0);
-    defect = select(defect, PARTICLE_RADIUS, !(particle.radius > 0.0) || ball.radius > 1.0);
-    return select(PARTICLE_NOT_FINITE, defect, known);
-}
-
-// ---- airlight::transmittance::seen_particles ----
-// summary: Particles of a medium as seen from the eye: their order, outlines, and what of them a view ray passes.
-// source: the balls of transmittance/particles, seen along view rays instead of light rays.
-
-/// A number that grows with the depth of a point, metres in the world, before a camera; for a perspective one the
-/// distance from the plane of the eye.
-fn view_depth(camera: Camera, point: vec3<f32>) -> f32 {
-    let clip = camera.clip_from_world * vec4<f32>(point, 1.0);
-    return select(clip.w, clip.z * (camera.far_depth - camera.near_depth), camera.projection == ORTHOGRAPHIC);
 }
 
 // ---- airlight::transmittance::transmittance_map ----

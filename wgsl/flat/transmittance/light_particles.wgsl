@@ -17,20 +17,6 @@
 // binding order: out, the number of each particle.
 // binding transmittances: out, from the light to each, 0..1; -1 for what is dropped.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::camera ----
 // summary: View rays, distances and frustum planes from a camera's matrices, for any depth convention.
 // source: homogeneous unprojection; planes after Gribb and Hartmann, "Fast extraction of viewing frustum planes" (2001).
@@ -54,6 +40,20 @@ struct Camera {
     far_depth: f32,
     /// PERSPECTIVE or ORTHOGRAPHIC.
     projection: u32,
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -176,6 +176,32 @@ fn ascending_key(value: f32) -> u32 {
     return bits ^ select(0x80000000u, 0xffffffffu, bits >= 0x80000000u);
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
+/// The range d of the map, metres: how far apart depths 0 and 1 are.
+fn map_range(light: Light) -> f32 {
+    return length(light.world_from_clip[2].xyz);
+}
+
+/// Texels to the metre, across and down the map, whose sides lie across the light.
+fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
+    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
+    return 0.5 * size / max(across, vec2<f32>(1e-12));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -242,32 +268,6 @@ fn extinction_optical_depth(
 /// Transmittance 0..1 of an optical depth; 1 where that is negative.
 fn transmittance_of(optical_depth: f32) -> f32 {
     return exp(-max(optical_depth, 0.0));
-}
-
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
-
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
-}
-
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
-}
-
-/// The range d of the map, metres: how far apart depths 0 and 1 are.
-fn map_range(light: Light) -> f32 {
-    return length(light.world_from_clip[2].xyz);
-}
-
-/// Texels to the metre, across and down the map, whose sides lie across the light.
-fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
-    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
-    return 0.5 * size / max(across, vec2<f32>(1e-12));
 }
 
 // ---- airlight::transmittance::particles ----

@@ -21,18 +21,55 @@
 // binding depth: depth buffer of the picture, a depth format or r32float.
 // binding picture: out of the compute entry point (the fragment entry point returns it), rgba16float: premultiplied linear RGB radiance, and in alpha the transmittance to the background.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::bricks ----
+// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
+// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+/// Voxels along a brick.
+const BRICK: u32 = 8u;
+/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
+const MARGIN: f32 = 0.01;
+
+/// Bricks along each axis of a volume of `size` voxels.
+fn brick_count(size: vec3<u32>) -> vec3<u32> {
+    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
 }
 
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
+/// The brick of a place in unit space; outside of the volume the nearest inside.
+fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
+    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
+    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
+}
+
+/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
+/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
+fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
+    let side = f32(BRICK) / vec3<f32>(size);
+    let brick = vec3<f32>(brick_at(unit, size));
+    let reach = f32(max(distance, 1u));
+    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
+    let still = abs(step) < vec3<f32>(1e-12);
+    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
+    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
+}
+
+/// Samples of a march that lie among bricks that are alike.
+struct Run {
+    /// The first that may hold something; `end` where none does.
+    begin: u32,
+    /// The first of the next run.
+    end: u32,
+}
+
+/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
+/// from sample to sample, in unit space.
+fn run_of_samples(
+    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
+) -> Run {
+    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
+    let distance = textureLoad(distances, brick, 0).x;
+    let end = min(i + samples_alike(unit, step, size, distance), steps);
+    return Run(select(end, i, distance == 0u), end);
 }
 
 // ---- airlight::core::camera ----
@@ -94,55 +131,18 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
 }
 
-// ---- airlight::core::bricks ----
-// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
-// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Voxels along a brick.
-const BRICK: u32 = 8u;
-/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
-const MARGIN: f32 = 0.01;
-
-/// Bricks along each axis of a volume of `size` voxels.
-fn brick_count(size: vec3<u32>) -> vec3<u32> {
-    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-/// The brick of a place in unit space; outside of the volume the nearest inside.
-fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
-    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
-    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
-}
-
-/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
-/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
-fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
-    let side = f32(BRICK) / vec3<f32>(size);
-    let brick = vec3<f32>(brick_at(unit, size));
-    let reach = f32(max(distance, 1u));
-    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
-    let still = abs(step) < vec3<f32>(1e-12);
-    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
-    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
-}
-
-/// Samples of a march that lie among bricks that are alike.
-struct Run {
-    /// The first that may hold something; `end` where none does.
-    begin: u32,
-    /// The first of the next run.
-    end: u32,
-}
-
-/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
-/// from sample to sample, in unit space.
-fn run_of_samples(
-    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
-) -> Run {
-    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
-    let distance = textureLoad(distances, brick, 0).x;
-    let end = min(i + samples_alike(unit, step, size, distance), steps);
-    return Run(select(end, i, distance == 0u), end);
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -328,6 +328,21 @@ fn march_steps(metres: f32, volume: VolumeSpace) -> u32 {
     return u32(clamp(ceil(metres / max(volume.step_length, 1e-6) - 1e-3), 1.0, MOST_STEPS));
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -369,65 +384,6 @@ fn mixed_texel(map: texture_2d_array<f32>, at: Footprint, layer: u32) -> vec4<f3
     let third = textureLoad(map, vec2<u32>(at.columns.x, at.rows.y), layer, 0);
     let fourth = textureLoad(map, vec2<u32>(at.columns.y, at.rows.y), layer, 0);
     return finite_parts(mix(mix(first, second, at.share.x), mix(third, fourth, at.share.x), at.share.y));
-}
-
-// ---- airlight::transmittance::opacity_map ----
-// summary: Fourier opacity maps: extinction along a light ray as a Fourier series with the range as its period.
-// source: Jansen, Bavoil, "Fourier opacity mapping" (I3D 2010).
-
-/// Harmonics of the first group at `depth`, or of a half length; core/cosine_basis goes on with `harmonics_next`.
-fn periods_first(depth: f32) -> Harmonics {
-    let one = sine_cosine(2.0 * depth);
-    let two = rotate(one, one);
-    return Harmonics(vec4<f32>(1.0, one.y, one.y, two.y), vec4<f32>(0.0, one.x, one.x, two.x), two);
-}
-
-/// The functions of a group.
-fn period_basis(at: Harmonics, group: u32) -> vec4<f32> {
-    let own = ROOT_OF_TWO * vec4<f32>(at.sine.x, at.cosine.y, at.sine.z, at.cosine.w);
-    return vec4<f32>(select(own.x, 1.0, group == 0u), own.yzw);
-}
-
-// ---- airlight::transmittance::function_map ----
-// summary: Transmittance function maps: transmittance itself along a light ray as a series.
-// source: Delalandre, Gautron, Marvie, Francois, "Transmittance function mapping" (I3D 2011).
-
-/// Transmittance 0..1 at `depth` 0..1. `layers`: of the map, four coefficients each. `periodic`: true for the series of
-/// opacity_map instead of cosines.
-fn function_transmittance(
-    map: texture_2d_array<f32>, place: Footprint, depth: f32, layers: u32, periodic: bool
-) -> f32 {
-    let inside = clamp(depth, 0.0, 1.0);
-    var sum = 0.0;
-    if periodic {
-        var at = periods_first(inside);
-        for (var group = 0u; group < layers; group++) {
-            sum += dot(mixed_texel(map, place, group), period_basis(at, group));
-            at = harmonics_next(at);
-        }
-    } else {
-        var at = harmonics_first(inside);
-        for (var group = 0u; group < layers; group++) {
-            sum += dot(mixed_texel(map, place, group), cosine_basis(at, group));
-            at = harmonics_next(at);
-        }
-    }
-    return clamp(sum, 0.0, 1.0);
-}
-
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
-
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
-}
-
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
 }
 
 // ---- airlight::transmittance::medium ----
@@ -490,6 +446,50 @@ fn marched_on(before: Marched, optical_depth: f32, light_transmittance: f32) -> 
 fn medium_pixel(source: vec3<f32>, marched: Marched) -> vec4<f32> {
     let radiance = clamp(source * marched.scattered, vec3<f32>(0.0), vec3<f32>(GREATEST_RADIANCE));
     return vec4<f32>(radiance, clamp(marched.transmittance, 0.0, 1.0));
+}
+
+// ---- airlight::transmittance::opacity_map ----
+// summary: Fourier opacity maps: extinction along a light ray as a Fourier series with the range as its period.
+// source: Jansen, Bavoil, "Fourier opacity mapping" (I3D 2010).
+
+/// Harmonics of the first group at `depth`, or of a half length; core/cosine_basis goes on with `harmonics_next`.
+fn periods_first(depth: f32) -> Harmonics {
+    let one = sine_cosine(2.0 * depth);
+    let two = rotate(one, one);
+    return Harmonics(vec4<f32>(1.0, one.y, one.y, two.y), vec4<f32>(0.0, one.x, one.x, two.x), two);
+}
+
+/// The functions of a group.
+fn period_basis(at: Harmonics, group: u32) -> vec4<f32> {
+    let own = ROOT_OF_TWO * vec4<f32>(at.sine.x, at.cosine.y, at.sine.z, at.cosine.w);
+    return vec4<f32>(select(own.x, 1.0, group == 0u), own.yzw);
+}
+
+// ---- airlight::transmittance::function_map ----
+// summary: Transmittance function maps: transmittance itself along a light ray as a series.
+// source: Delalandre, Gautron, Marvie, Francois, "Transmittance function mapping" (I3D 2011).
+
+/// Transmittance 0..1 at `depth` 0..1. `layers`: of the map, four coefficients each. `periodic`: true for the series of
+/// opacity_map instead of cosines.
+fn function_transmittance(
+    map: texture_2d_array<f32>, place: Footprint, depth: f32, layers: u32, periodic: bool
+) -> f32 {
+    let inside = clamp(depth, 0.0, 1.0);
+    var sum = 0.0;
+    if periodic {
+        var at = periods_first(inside);
+        for (var group = 0u; group < layers; group++) {
+            sum += dot(mixed_texel(map, place, group), period_basis(at, group));
+            at = harmonics_next(at);
+        }
+    } else {
+        var at = harmonics_first(inside);
+        for (var group = 0u; group < layers; group++) {
+            sum += dot(mixed_texel(map, place, group), cosine_basis(at, group));
+            at = harmonics_next(at);
+        }
+    }
+    return clamp(sum, 0.0, 1.0);
 }
 
 // ---- airlight::transmittance::transmittance_map ----

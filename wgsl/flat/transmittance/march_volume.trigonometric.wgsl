@@ -21,18 +21,65 @@
 // binding depth: depth buffer of the picture, a depth format or r32float.
 // binding picture: out of the compute entry point (the fragment entry point returns it), rgba16float: premultiplied linear RGB radiance, and in alpha the transmittance to the background.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
 }
 
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
+// ---- airlight::core::bricks ----
+// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
+// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
+
+/// Voxels along a brick.
+const BRICK: u32 = 8u;
+/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
+const MARGIN: f32 = 0.01;
+
+/// Bricks along each axis of a volume of `size` voxels.
+fn brick_count(size: vec3<u32>) -> vec3<u32> {
+    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
+}
+
+/// The brick of a place in unit space; outside of the volume the nearest inside.
+fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
+    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
+    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
+}
+
+/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
+/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
+fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
+    let side = f32(BRICK) / vec3<f32>(size);
+    let brick = vec3<f32>(brick_at(unit, size));
+    let reach = f32(max(distance, 1u));
+    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
+    let still = abs(step) < vec3<f32>(1e-12);
+    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
+    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
+}
+
+/// Samples of a march that lie among bricks that are alike.
+struct Run {
+    /// The first that may hold something; `end` where none does.
+    begin: u32,
+    /// The first of the next run.
+    end: u32,
+}
+
+/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
+/// from sample to sample, in unit space.
+fn run_of_samples(
+    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
+) -> Run {
+    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
+    let distance = textureLoad(distances, brick, 0).x;
+    let end = min(i + samples_alike(unit, step, size, distance), steps);
+    return Run(select(end, i, distance == 0u), end);
 }
 
 // ---- airlight::core::camera ----
@@ -94,65 +141,18 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
 }
 
-// ---- airlight::core::arc_cosine ----
-// summary: The angle whose cosine is given, as exact as its cosine.
-// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
-fn arc_cosine(cosine: f32) -> f32 {
-    let held = clamp(cosine, -1.0, 1.0);
-    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-// ---- airlight::core::bricks ----
-// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
-// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
-
-/// Voxels along a brick.
-const BRICK: u32 = 8u;
-/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
-const MARGIN: f32 = 0.01;
-
-/// Bricks along each axis of a volume of `size` voxels.
-fn brick_count(size: vec3<u32>) -> vec3<u32> {
-    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
-}
-
-/// The brick of a place in unit space; outside of the volume the nearest inside.
-fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
-    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
-    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
-}
-
-/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
-/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
-fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
-    let side = f32(BRICK) / vec3<f32>(size);
-    let brick = vec3<f32>(brick_at(unit, size));
-    let reach = f32(max(distance, 1u));
-    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
-    let still = abs(step) < vec3<f32>(1e-12);
-    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
-    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
-}
-
-/// Samples of a march that lie among bricks that are alike.
-struct Run {
-    /// The first that may hold something; `end` where none does.
-    begin: u32,
-    /// The first of the next run.
-    end: u32,
-}
-
-/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
-/// from sample to sample, in unit space.
-fn run_of_samples(
-    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
-) -> Run {
-    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
-    let distance = textureLoad(distances, brick, 0).x;
-    let end = min(i + samples_alike(unit, step, size, distance), steps);
-    return Run(select(end, i, distance == 0u), end);
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -284,6 +284,21 @@ fn march_steps(metres: f32, volume: VolumeSpace) -> u32 {
     return u32(clamp(ceil(metres / max(volume.step_length, 1e-6) - 1e-3), 1.0, MOST_STEPS));
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -327,19 +342,66 @@ fn mixed_texel(map: texture_2d_array<f32>, at: Footprint, layer: u32) -> vec4<f3
     return finite_parts(mix(mix(first, second, at.share.x), mix(third, fourth, at.share.x), at.share.y));
 }
 
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
+// ---- airlight::transmittance::medium ----
+// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
+// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
 
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+/// How a medium scatters light. 32 bytes.
+struct MediumLighting {
+    /// Single-scattering albedo, 0..1 for each colour.
+    albedo: vec3<f32>,
+    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
+    g: f32,
+    /// View rays end here if they meet nothing nearer, metres, positive.
+    distance_limit: f32,
+    reserved_a: f32,
+    reserved_b: f32,
+    reserved_c: f32,
 }
 
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
+/// The greatest half float.
+const GREATEST_RADIANCE: f32 = 65504.0;
+
+/// More than any extinction may be, 1/m.
+const GREATEST_EXTINCTION: f32 = 1e6;
+
+/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
+fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
+    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
+}
+
+/// What was met on a view ray from the eye up to a place.
+struct Marched {
+    /// Sum of T_eye (1 - exp(-tau)) T_light over the steps, 0..1: the share of `source_radiance` that reaches the eye.
+    scattered: f32,
+    /// Transmittance from the eye to that place, 0..1.
+    transmittance: f32,
+}
+
+/// Linear RGB radiance of an opaque medium in full light. `light_radiance`: irradiance of the light at normal incidence;
+/// `cosine`: view direction times direction TOWARDS the light.
+fn source_radiance(lighting: MediumLighting, light_radiance: vec3<f32>, cosine: f32) -> vec3<f32> {
+    return lighting.albedo * light_radiance * henyey_greenstein(cosine, lighting.g);
+}
+
+/// Nothing was met yet.
+fn marched_nothing() -> Marched {
+    return Marched(0.0, 1.0);
+}
+
+/// With a step of `optical_depth` more, from 0 up. `light_transmittance`: from the light to it, 0..1.
+fn marched_on(before: Marched, optical_depth: f32, light_transmittance: f32) -> Marched {
+    let scattered = one_minus_exp(optical_depth);
+    return Marched(
+        before.scattered + before.transmittance * scattered * light_transmittance,
+        before.transmittance * (1.0 - scattered)
+    );
+}
+
+/// A pixel: premultiplied radiance, and transmittance to the background in alpha. `source`: of `source_radiance`.
+fn medium_pixel(source: vec3<f32>, marched: Marched) -> vec4<f32> {
+    let radiance = clamp(source * marched.scattered, vec3<f32>(0.0), vec3<f32>(GREATEST_RADIANCE));
+    return vec4<f32>(radiance, clamp(marched.transmittance, 0.0, 1.0));
 }
 
 // ---- airlight::transmittance::transmittance_moments ----
@@ -437,68 +499,6 @@ fn trigonometric_transmittance(first: vec4<f32>, second: vec4<f32>, depth: f32) 
         left -= weight;
     }
     return exp(-total * clamp(before, 0.0, 1.0));
-}
-
-// ---- airlight::transmittance::medium ----
-// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
-// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
-
-/// How a medium scatters light. 32 bytes.
-struct MediumLighting {
-    /// Single-scattering albedo, 0..1 for each colour.
-    albedo: vec3<f32>,
-    /// Mean cosine of the Henyey-Greenstein phase function, -0.999..0.999.
-    g: f32,
-    /// View rays end here if they meet nothing nearer, metres, positive.
-    distance_limit: f32,
-    reserved_a: f32,
-    reserved_b: f32,
-    reserved_c: f32,
-}
-
-/// The greatest half float.
-const GREATEST_RADIANCE: f32 = 65504.0;
-
-/// More than any extinction may be, 1/m.
-const GREATEST_EXTINCTION: f32 = 1e6;
-
-/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
-fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
-    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
-}
-
-/// What was met on a view ray from the eye up to a place.
-struct Marched {
-    /// Sum of T_eye (1 - exp(-tau)) T_light over the steps, 0..1: the share of `source_radiance` that reaches the eye.
-    scattered: f32,
-    /// Transmittance from the eye to that place, 0..1.
-    transmittance: f32,
-}
-
-/// Linear RGB radiance of an opaque medium in full light. `light_radiance`: irradiance of the light at normal incidence;
-/// `cosine`: view direction times direction TOWARDS the light.
-fn source_radiance(lighting: MediumLighting, light_radiance: vec3<f32>, cosine: f32) -> vec3<f32> {
-    return lighting.albedo * light_radiance * henyey_greenstein(cosine, lighting.g);
-}
-
-/// Nothing was met yet.
-fn marched_nothing() -> Marched {
-    return Marched(0.0, 1.0);
-}
-
-/// With a step of `optical_depth` more, from 0 up. `light_transmittance`: from the light to it, 0..1.
-fn marched_on(before: Marched, optical_depth: f32, light_transmittance: f32) -> Marched {
-    let scattered = one_minus_exp(optical_depth);
-    return Marched(
-        before.scattered + before.transmittance * scattered * light_transmittance,
-        before.transmittance * (1.0 - scattered)
-    );
-}
-
-/// A pixel: premultiplied radiance, and transmittance to the background in alpha. `source`: of `source_radiance`.
-fn medium_pixel(source: vec3<f32>, marched: Marched) -> vec4<f32> {
-    let radiance = clamp(source * marched.scattered, vec3<f32>(0.0), vec3<f32>(GREATEST_RADIANCE));
-    return vec4<f32>(radiance, clamp(marched.transmittance, 0.0, 1.0));
 }
 
 // ---- airlight::transmittance::transmittance_map ----

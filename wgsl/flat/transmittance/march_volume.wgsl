@@ -20,18 +20,55 @@
 // binding depth: depth buffer of the picture, a depth format or r32float.
 // binding picture: out of the compute entry point (the fragment entry point returns it), rgba16float: premultiplied linear RGB radiance, and in alpha the transmittance to the background.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+// ---- airlight::core::bricks ----
+// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
+// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
 
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+/// Voxels along a brick.
+const BRICK: u32 = 8u;
+/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
+const MARGIN: f32 = 0.01;
+
+/// Bricks along each axis of a volume of `size` voxels.
+fn brick_count(size: vec3<u32>) -> vec3<u32> {
+    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
 }
 
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
+/// The brick of a place in unit space; outside of the volume the nearest inside.
+fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
+    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
+    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
+}
+
+/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
+/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
+fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
+    let side = f32(BRICK) / vec3<f32>(size);
+    let brick = vec3<f32>(brick_at(unit, size));
+    let reach = f32(max(distance, 1u));
+    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
+    let still = abs(step) < vec3<f32>(1e-12);
+    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
+    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
+}
+
+/// Samples of a march that lie among bricks that are alike.
+struct Run {
+    /// The first that may hold something; `end` where none does.
+    begin: u32,
+    /// The first of the next run.
+    end: u32,
+}
+
+/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
+/// from sample to sample, in unit space.
+fn run_of_samples(
+    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
+) -> Run {
+    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
+    let distance = textureLoad(distances, brick, 0).x;
+    let end = min(i + samples_alike(unit, step, size, distance), steps);
+    return Run(select(end, i, distance == 0u), end);
 }
 
 // ---- airlight::core::camera ----
@@ -93,55 +130,18 @@ fn distance_from_depth(camera: Camera, ray: Ray, ndc: vec2<f32>, depth: f32, lim
     return select(max(along / select(point.w, 1.0, beyond), 0.0), limit, beyond);
 }
 
-// ---- airlight::core::bricks ----
-// summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
-// source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
 
-/// Voxels along a brick.
-const BRICK: u32 = 8u;
-/// What samples of a march may lie beyond the place that they are reckoned to be, in samples.
-const MARGIN: f32 = 0.01;
-
-/// Bricks along each axis of a volume of `size` voxels.
-fn brick_count(size: vec3<u32>) -> vec3<u32> {
-    return (size + vec3<u32>(BRICK - 1u)) / BRICK;
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-/// The brick of a place in unit space; outside of the volume the nearest inside.
-fn brick_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
-    let last = vec3<f32>(max(brick_count(size), vec3<u32>(1u)) - 1u);
-    return vec3<u32>(clamp(floor(unit * vec3<f32>(size) / f32(BRICK)), vec3<f32>(0.0), last));
-}
-
-/// How many samples of a march, with that at `unit`, lie among bricks that are alike: in this one if it is occupied
-/// (`distance` 0), else among the empty ones around it. At least 1. `step`: from sample to sample, in unit space.
-fn samples_alike(unit: vec3<f32>, step: vec3<f32>, size: vec3<u32>, distance: u32) -> u32 {
-    let side = f32(BRICK) / vec3<f32>(size);
-    let brick = vec3<f32>(brick_at(unit, size));
-    let reach = f32(max(distance, 1u));
-    let wall = side * select(brick - (reach - 1.0), brick + reach, step > vec3<f32>(0.0));
-    let still = abs(step) < vec3<f32>(1e-12);
-    let samples = select((wall - unit) / select(step, vec3<f32>(1.0), still), vec3<f32>(8192.0), still);
-    return 1u + u32(clamp(min(min(samples.x, samples.y), samples.z) - MARGIN, 0.0, 8192.0));
-}
-
-/// Samples of a march that lie among bricks that are alike.
-struct Run {
-    /// The first that may hold something; `end` where none does.
-    begin: u32,
-    /// The first of the next run.
-    end: u32,
-}
-
-/// The run that begins with sample `i` of `steps`, at `unit`. `distances`: of the bricks of a volume of `size` voxels; `step`:
-/// from sample to sample, in unit space.
-fn run_of_samples(
-    distances: texture_3d<u32>, size: vec3<u32>, unit: vec3<f32>, step: vec3<f32>, i: u32, steps: u32
-) -> Run {
-    let brick = min(brick_at(unit, size), textureDimensions(distances) - 1u);
-    let distance = textureLoad(distances, brick, 0).x;
-    let end = min(i + samples_alike(unit, step, size, distance), steps);
-    return Run(select(end, i, distance == 0u), end);
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -334,6 +334,21 @@ fn march_steps(metres: f32, volume: VolumeSpace) -> u32 {
     return u32(clamp(ceil(metres / max(volume.step_length, 1e-6) - 1e-3), 1.0, MOST_STEPS));
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -400,21 +415,6 @@ fn extinction_optical_depth(
 /// Transmittance 0..1 of an optical depth; 1 where that is negative.
 fn transmittance_of(optical_depth: f32) -> f32 {
     return exp(-max(optical_depth, 0.0));
-}
-
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
-
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
-}
-
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
 }
 
 // ---- airlight::transmittance::medium ----

@@ -129,6 +129,21 @@ fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32>
     return texels_from_clip(light.clip_from_world * vec4<f32>(point, 1.0), size);
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -214,21 +229,6 @@ fn function_transmittance(
         }
     }
     return clamp(sum, 0.0, 1.0);
-}
-
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
-
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
-}
-
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
 }
 
 // ---- airlight::transmittance::transmittance_map ----

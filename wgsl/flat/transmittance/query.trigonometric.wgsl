@@ -11,6 +11,16 @@
 // binding points: points in the world, metres; the fourth number is not used.
 // binding transmittances: out, 0..1, one a point.
 
+// ---- airlight::core::arc_cosine ----
+// summary: The angle whose cosine is given, as exact as its cosine.
+// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
+
+/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
+fn arc_cosine(cosine: f32) -> f32 {
+    let held = clamp(cosine, -1.0, 1.0);
+    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
+}
+
 // ---- airlight::core::finite ----
 // summary: Replaces NaN and infinities in data that comes from outside.
 // source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
@@ -23,16 +33,6 @@ fn is_finite(x: f32) -> bool {
 /// `x` where it is finite, `fallback` elsewhere.
 fn finite_or(x: f32, fallback: f32) -> f32 {
     return select(fallback, x, is_finite(x));
-}
-
-// ---- airlight::core::arc_cosine ----
-// summary: The angle whose cosine is given, as exact as its cosine.
-// source: acos(x) = atan2(sqrt(1 - x^2), x), by which the WGSL specification bounds the error of acos.
-
-/// Radians 0..pi; a cosine outside -1..1 counts as the nearer end.
-fn arc_cosine(cosine: f32) -> f32 {
-    let held = clamp(cosine, -1.0, 1.0);
-    return atan2(sqrt((1.0 - held) * (1.0 + held)), held);
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -84,6 +84,21 @@ fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32>
     return texels_from_clip(light.clip_from_world * vec4<f32>(point, 1.0), size);
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
 // ---- airlight::transmittance::map_texels ----
 // summary: Callback: the texels of a map around a place, and bilinear means of their layers.
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
@@ -125,21 +140,6 @@ fn mixed_texel(map: texture_2d_array<f32>, at: Footprint, layer: u32) -> vec4<f3
     let third = textureLoad(map, vec2<u32>(at.columns.x, at.rows.y), layer, 0);
     let fourth = textureLoad(map, vec2<u32>(at.columns.y, at.rows.y), layer, 0);
     return finite_parts(mix(mix(first, second, at.share.x), mix(third, fourth, at.share.x), at.share.y));
-}
-
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
-
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
-}
-
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
 }
 
 // ---- airlight::transmittance::transmittance_moments ----

@@ -139,16 +139,6 @@ fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32>
     return texels_from_clip(light.clip_from_world * vec4<f32>(point, 1.0), size);
 }
 
-// ---- airlight::transmittance::extinction_map ----
-// summary: Extinction transmittance maps: extinction along a light ray as a cosine series, transmittance from its integral.
-// source: Gautron, Delalandre, Marvie, "Extinction transmittance maps" (SIGGRAPH Asia 2011 sketches), Eq. 1 to 3.
-
-/// Coefficients of a group of a stretch of optical depth 1. `middle` and `extent`: harmonics of the depth of its middle and
-/// of its half length, `half`, all over the range of the map.
-fn extinction_coefficients(middle: Harmonics, extent: Harmonics, half: f32, group: u32) -> vec4<f32> {
-    return cosine_basis(middle, group) * cosine_spread(extent, half, group);
-}
-
 // ---- airlight::transmittance::light_space ----
 // summary: Places in a transmittance map: texels across the light, and the depth along it.
 // source: core/light for the clip space of a directional light.
@@ -175,30 +165,14 @@ fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
     return 0.5 * size / max(across, vec2<f32>(1e-12));
 }
 
-// ---- airlight::transmittance::map_form ----
-// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
-// source: the algorithm modules of the forms.
+// ---- airlight::transmittance::extinction_map ----
+// summary: Extinction transmittance maps: extinction along a light ray as a cosine series, transmittance from its integral.
+// source: Gautron, Delalandre, Marvie, "Extinction transmittance maps" (SIGGRAPH Asia 2011 sketches), Eq. 1 to 3.
 
-/// Layers of a map.
-const LAYERS: u32 = u32(16) / 4u;
-
-/// What a stretch of optical depth 1 adds to each layer.
-struct Contribution {
-    /// Layer by layer.
-    layers: array<vec4<f32>, LAYERS>,
-}
-
-/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
-fn contribution(middle: f32, half: f32) -> Contribution {
-    var all: Contribution;
-    var at = harmonics_first(middle);
-    var extent = harmonics_first(half);
-    for (var layer = 0u; layer < LAYERS; layer++) {
-        all.layers[layer] = extinction_coefficients(at, extent, half, layer);
-        at = harmonics_next(at);
-        extent = harmonics_next(extent);
-    }
-    return all;
+/// Coefficients of a group of a stretch of optical depth 1. `middle` and `extent`: harmonics of the depth of its middle and
+/// of its half length, `half`, all over the range of the map.
+fn extinction_coefficients(middle: Harmonics, extent: Harmonics, half: f32, group: u32) -> vec4<f32> {
+    return cosine_basis(middle, group) * cosine_spread(extent, half, group);
 }
 
 // ---- airlight::transmittance::particles ----
@@ -298,6 +272,32 @@ fn stretch_of_ball(ball: Ball, texels: vec2<f32>) -> Stretch {
     let ends = clamp(ball.depth + half, 0.0, 1.0);
     let kept = (ends - begins) / max(2.0 * half, 1e-12);
     return Stretch(0.5 * (begins + ends), 0.5 * (ends - begins), ball.optical_depth * chord * clamp(kept, 0.0, 1.0));
+}
+
+// ---- airlight::transmittance::map_form ----
+// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
+// source: the algorithm modules of the forms.
+
+/// Layers of a map.
+const LAYERS: u32 = u32(16) / 4u;
+
+/// What a stretch of optical depth 1 adds to each layer.
+struct Contribution {
+    /// Layer by layer.
+    layers: array<vec4<f32>, LAYERS>,
+}
+
+/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
+fn contribution(middle: f32, half: f32) -> Contribution {
+    var all: Contribution;
+    var at = harmonics_first(middle);
+    var extent = harmonics_first(half);
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        all.layers[layer] = extinction_coefficients(at, extent, half, layer);
+        at = harmonics_next(at);
+        extent = harmonics_next(extent);
+    }
+    return all;
 }
 
 // ---- transmittance/splat ----

@@ -114,6 +114,32 @@ fn shadow_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32>
     return texels_from_clip(light.clip_from_world * vec4<f32>(point, 1.0), size);
 }
 
+// ---- airlight::transmittance::light_space ----
+// summary: Places in a transmittance map: texels across the light, and the depth along it.
+// source: core/light for the clip space of a directional light.
+
+/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
+fn forward_depth(light: Light, clip_depth: f32) -> f32 {
+    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
+}
+
+/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
+fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
+    let at = shadow_position(light, size, point);
+    return vec3<f32>(at.xy, forward_depth(light, at.z));
+}
+
+/// The range d of the map, metres: how far apart depths 0 and 1 are.
+fn map_range(light: Light) -> f32 {
+    return length(light.world_from_clip[2].xyz);
+}
+
+/// Texels to the metre, across and down the map, whose sides lie across the light.
+fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
+    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
+    return 0.5 * size / max(across, vec2<f32>(1e-12));
+}
+
 // ---- airlight::transmittance::opacity_map ----
 // summary: Fourier opacity maps: extinction along a light ray as a Fourier series with the range as its period.
 // source: Jansen, Bavoil, "Fourier opacity mapping" (I3D 2010).
@@ -145,58 +171,6 @@ fn period_spread(at_half: Harmonics, half: f32, group: u32) -> vec4<f32> {
 /// `periods_first`.
 fn opacity_coefficients(middle: Harmonics, extent: Harmonics, half: f32, group: u32) -> vec4<f32> {
     return period_basis(middle, group) * period_spread(extent, half, group);
-}
-
-// ---- airlight::transmittance::light_space ----
-// summary: Places in a transmittance map: texels across the light, and the depth along it.
-// source: core/light for the clip space of a directional light.
-
-/// A depth of the light's clip space as a depth of the map or back: 0 near, 1 far.
-fn forward_depth(light: Light, clip_depth: f32) -> f32 {
-    return select(1.0 - clip_depth, clip_depth, light.far_depth > 0.5);
-}
-
-/// Position in texels and depth 0..1 of a point in the world, metres; outside of the map beyond these ranges.
-fn map_position(light: Light, size: vec2<f32>, point: vec3<f32>) -> vec3<f32> {
-    let at = shadow_position(light, size, point);
-    return vec3<f32>(at.xy, forward_depth(light, at.z));
-}
-
-/// The range d of the map, metres: how far apart depths 0 and 1 are.
-fn map_range(light: Light) -> f32 {
-    return length(light.world_from_clip[2].xyz);
-}
-
-/// Texels to the metre, across and down the map, whose sides lie across the light.
-fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
-    let across = vec2<f32>(length(light.world_from_clip[0].xyz), length(light.world_from_clip[1].xyz));
-    return 0.5 * size / max(across, vec2<f32>(1e-12));
-}
-
-// ---- airlight::transmittance::map_form ----
-// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
-// source: the algorithm modules of the forms.
-
-/// Layers of a map.
-const LAYERS: u32 = u32(4) / 4u;
-
-/// What a stretch of optical depth 1 adds to each layer.
-struct Contribution {
-    /// Layer by layer.
-    layers: array<vec4<f32>, LAYERS>,
-}
-
-/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
-fn contribution(middle: f32, half: f32) -> Contribution {
-    var all: Contribution;
-    var at = periods_first(middle);
-    var extent = periods_first(half);
-    for (var layer = 0u; layer < LAYERS; layer++) {
-        all.layers[layer] = opacity_coefficients(at, extent, half, layer);
-        at = harmonics_next(at);
-        extent = harmonics_next(extent);
-    }
-    return all;
 }
 
 // ---- airlight::transmittance::particles ----
@@ -296,6 +270,32 @@ fn stretch_of_ball(ball: Ball, texels: vec2<f32>) -> Stretch {
     let ends = clamp(ball.depth + half, 0.0, 1.0);
     let kept = (ends - begins) / max(2.0 * half, 1e-12);
     return Stretch(0.5 * (begins + ends), 0.5 * (ends - begins), ball.optical_depth * chord * clamp(kept, 0.0, 1.0));
+}
+
+// ---- airlight::transmittance::map_form ----
+// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
+// source: the algorithm modules of the forms.
+
+/// Layers of a map.
+const LAYERS: u32 = u32(4) / 4u;
+
+/// What a stretch of optical depth 1 adds to each layer.
+struct Contribution {
+    /// Layer by layer.
+    layers: array<vec4<f32>, LAYERS>,
+}
+
+/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
+fn contribution(middle: f32, half: f32) -> Contribution {
+    var all: Contribution;
+    var at = periods_first(middle);
+    var extent = periods_first(half);
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        all.layers[layer] = opacity_coefficients(at, extent, half, layer);
+        at = harmonics_next(at);
+        extent = harmonics_next(extent);
+    }
+    return all;
 }
 
 // ---- transmittance/splat ----

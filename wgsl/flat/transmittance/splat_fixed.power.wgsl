@@ -117,54 +117,6 @@ fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
     return 0.5 * size / max(across, vec2<f32>(1e-12));
 }
 
-// ---- airlight::transmittance::transmittance_moments ----
-// summary: Transmittance from moments of optical depth along a light ray: six of powers, or two complex trigonometric ones.
-// source: Muenstermann, Krumpen, Klein, Peters, "Moment-based order-independent transparency" (PACMCGIT 1(1), 2018).
-
-/// Nodes and weights of Gauss and Legendre on -1..1, exact to degree 7.
-const GAUSS_NODES: vec2<f32> = vec2<f32>(0.3399810435848563, 0.8611363115940526);
-const GAUSS_WEIGHTS: vec2<f32> = vec2<f32>(0.3260725774312731, 0.1739274225687269);
-
-/// The six moments of a stretch of optical depth 1 around `middle`, `half` to both sides, 0..1 over the range.
-fn stretch_moments(middle: f32, half: f32) -> Moments {
-    var sum = Moments(vec3<f32>(0.0), vec3<f32>(0.0));
-    for (var node = 0u; node < 4u; node++) {
-        let offset = select(GAUSS_NODES.x, GAUSS_NODES.y, node > 1u) * select(1.0, -1.0, (node & 1u) == 1u);
-        let weight = select(GAUSS_WEIGHTS.x, GAUSS_WEIGHTS.y, node > 1u);
-        let own = moments_at(clamp(2.0 * (middle + half * offset) - 1.0, -1.0, 1.0));
-        sum = Moments(sum.low + weight * own.low, sum.high + weight * own.high);
-    }
-    return sum;
-}
-
-/// What a stretch of optical depth 1 adds to one of two layers: 1, moments 1 to 3; moments 4 to 6.
-fn power_layer(middle: f32, half: f32, layer: u32) -> vec4<f32> {
-    let moments = stretch_moments(middle, half);
-    return select(vec4<f32>(1.0, moments.low), vec4<f32>(moments.high, 0.0), layer == 1u);
-}
-
-// ---- airlight::transmittance::map_form ----
-// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
-// source: the algorithm modules of the forms.
-
-/// Layers of a map.
-const LAYERS: u32 = u32(8) / 4u;
-
-/// What a stretch of optical depth 1 adds to each layer.
-struct Contribution {
-    /// Layer by layer.
-    layers: array<vec4<f32>, LAYERS>,
-}
-
-/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
-fn contribution(middle: f32, half: f32) -> Contribution {
-    var all: Contribution;
-    for (var layer = 0u; layer < LAYERS; layer++) {
-        all.layers[layer] = power_layer(middle, half, layer);
-    }
-    return all;
-}
-
 // ---- airlight::transmittance::particles ----
 // summary: Particles of a medium as seen from a light: which are dropped, and the stretch of each that a light ray passes.
 // source: Gautron et al., "Extinction transmittance maps" (2011), Eq. 1: depth x_i and traversal distance d_i of each.
@@ -262,6 +214,54 @@ fn stretch_of_ball(ball: Ball, texels: vec2<f32>) -> Stretch {
     let ends = clamp(ball.depth + half, 0.0, 1.0);
     let kept = (ends - begins) / max(2.0 * half, 1e-12);
     return Stretch(0.5 * (begins + ends), 0.5 * (ends - begins), ball.optical_depth * chord * clamp(kept, 0.0, 1.0));
+}
+
+// ---- airlight::transmittance::transmittance_moments ----
+// summary: Transmittance from moments of optical depth along a light ray: six of powers, or two complex trigonometric ones.
+// source: Muenstermann, Krumpen, Klein, Peters, "Moment-based order-independent transparency" (PACMCGIT 1(1), 2018).
+
+/// Nodes and weights of Gauss and Legendre on -1..1, exact to degree 7.
+const GAUSS_NODES: vec2<f32> = vec2<f32>(0.3399810435848563, 0.8611363115940526);
+const GAUSS_WEIGHTS: vec2<f32> = vec2<f32>(0.3260725774312731, 0.1739274225687269);
+
+/// The six moments of a stretch of optical depth 1 around `middle`, `half` to both sides, 0..1 over the range.
+fn stretch_moments(middle: f32, half: f32) -> Moments {
+    var sum = Moments(vec3<f32>(0.0), vec3<f32>(0.0));
+    for (var node = 0u; node < 4u; node++) {
+        let offset = select(GAUSS_NODES.x, GAUSS_NODES.y, node > 1u) * select(1.0, -1.0, (node & 1u) == 1u);
+        let weight = select(GAUSS_WEIGHTS.x, GAUSS_WEIGHTS.y, node > 1u);
+        let own = moments_at(clamp(2.0 * (middle + half * offset) - 1.0, -1.0, 1.0));
+        sum = Moments(sum.low + weight * own.low, sum.high + weight * own.high);
+    }
+    return sum;
+}
+
+/// What a stretch of optical depth 1 adds to one of two layers: 1, moments 1 to 3; moments 4 to 6.
+fn power_layer(middle: f32, half: f32, layer: u32) -> vec4<f32> {
+    let moments = stretch_moments(middle, half);
+    return select(vec4<f32>(1.0, moments.low), vec4<f32>(moments.high, 0.0), layer == 1u);
+}
+
+// ---- airlight::transmittance::map_form ----
+// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
+// source: the algorithm modules of the forms.
+
+/// Layers of a map.
+const LAYERS: u32 = u32(8) / 4u;
+
+/// What a stretch of optical depth 1 adds to each layer.
+struct Contribution {
+    /// Layer by layer.
+    layers: array<vec4<f32>, LAYERS>,
+}
+
+/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
+fn contribution(middle: f32, half: f32) -> Contribution {
+    var all: Contribution;
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        all.layers[layer] = power_layer(middle, half, layer);
+    }
+    return all;
 }
 
 // ---- transmittance/splat_fixed ----

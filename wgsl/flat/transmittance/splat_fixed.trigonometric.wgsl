@@ -99,52 +99,6 @@ fn texels_per_metre(light: Light, size: vec2<f32>) -> vec2<f32> {
     return 0.5 * size / max(across, vec2<f32>(1e-12));
 }
 
-// ---- airlight::transmittance::transmittance_moments ----
-// summary: Transmittance from moments of optical depth along a light ray: six of powers, or two complex trigonometric ones.
-// source: Muenstermann, Krumpen, Klein, Peters, "Moment-based order-independent transparency" (PACMCGIT 1(1), 2018).
-
-/// Arc of the circle that no depth maps to, radians.
-const GAP: f32 = 0.3141592653589793;
-
-/// The same of trigonometric moments: 1, cosine and sine, cosine of twice the phase; its sine.
-fn trigonometric_layer(middle: f32, half: f32, layer: u32) -> vec4<f32> {
-    let phase = (2.0 * PI - GAP) * middle;
-    let reach = (2.0 * PI - GAP) * half;
-    let once = sine_quotient(reach) * vec2<f32>(cos(phase), sin(phase));
-    let twice = sine_quotient(2.0 * reach) * vec2<f32>(cos(2.0 * phase), sin(2.0 * phase));
-    return select(vec4<f32>(1.0, once, twice.x), vec4<f32>(twice.y, 0.0, 0.0, 0.0), layer == 1u);
-}
-
-/// sin(x) / x.
-fn sine_quotient(x: f32) -> f32 {
-    const third: f32 = 1.0 / 6.0;
-    let square = x * x;
-    let near = 1.0 - third * square * (1.0 - 0.05 * square * (1.0 - square / 42.0));
-    return select(near, sin(x) / max(abs(x), 0.5) * sign(x), abs(x) > 0.5);
-}
-
-// ---- airlight::transmittance::map_form ----
-// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
-// source: the algorithm modules of the forms.
-
-/// Layers of a map.
-const LAYERS: u32 = u32(8) / 4u;
-
-/// What a stretch of optical depth 1 adds to each layer.
-struct Contribution {
-    /// Layer by layer.
-    layers: array<vec4<f32>, LAYERS>,
-}
-
-/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
-fn contribution(middle: f32, half: f32) -> Contribution {
-    var all: Contribution;
-    for (var layer = 0u; layer < LAYERS; layer++) {
-        all.layers[layer] = trigonometric_layer(middle, half, layer);
-    }
-    return all;
-}
-
 // ---- airlight::transmittance::particles ----
 // summary: Particles of a medium as seen from a light: which are dropped, and the stretch of each that a light ray passes.
 // source: Gautron et al., "Extinction transmittance maps" (2011), Eq. 1: depth x_i and traversal distance d_i of each.
@@ -242,6 +196,52 @@ fn stretch_of_ball(ball: Ball, texels: vec2<f32>) -> Stretch {
     let ends = clamp(ball.depth + half, 0.0, 1.0);
     let kept = (ends - begins) / max(2.0 * half, 1e-12);
     return Stretch(0.5 * (begins + ends), 0.5 * (ends - begins), ball.optical_depth * chord * clamp(kept, 0.0, 1.0));
+}
+
+// ---- airlight::transmittance::transmittance_moments ----
+// summary: Transmittance from moments of optical depth along a light ray: six of powers, or two complex trigonometric ones.
+// source: Muenstermann, Krumpen, Klein, Peters, "Moment-based order-independent transparency" (PACMCGIT 1(1), 2018).
+
+/// Arc of the circle that no depth maps to, radians.
+const GAP: f32 = 0.3141592653589793;
+
+/// The same of trigonometric moments: 1, cosine and sine, cosine of twice the phase; its sine.
+fn trigonometric_layer(middle: f32, half: f32, layer: u32) -> vec4<f32> {
+    let phase = (2.0 * PI - GAP) * middle;
+    let reach = (2.0 * PI - GAP) * half;
+    let once = sine_quotient(reach) * vec2<f32>(cos(phase), sin(phase));
+    let twice = sine_quotient(2.0 * reach) * vec2<f32>(cos(2.0 * phase), sin(2.0 * phase));
+    return select(vec4<f32>(1.0, once, twice.x), vec4<f32>(twice.y, 0.0, 0.0, 0.0), layer == 1u);
+}
+
+/// sin(x) / x.
+fn sine_quotient(x: f32) -> f32 {
+    const third: f32 = 1.0 / 6.0;
+    let square = x * x;
+    let near = 1.0 - third * square * (1.0 - 0.05 * square * (1.0 - square / 42.0));
+    return select(near, sin(x) / max(abs(x), 0.5) * sign(x), abs(x) > 0.5);
+}
+
+// ---- airlight::transmittance::map_form ----
+// summary: Callback: what a stretch of extinction adds to the layers of a map, by whichever form the pass was built for.
+// source: the algorithm modules of the forms.
+
+/// Layers of a map.
+const LAYERS: u32 = u32(8) / 4u;
+
+/// What a stretch of optical depth 1 adds to each layer.
+struct Contribution {
+    /// Layer by layer.
+    layers: array<vec4<f32>, LAYERS>,
+}
+
+/// What the stretch around `middle`, `half` to both sides, 0..1 over the range or the interval, adds.
+fn contribution(middle: f32, half: f32) -> Contribution {
+    var all: Contribution;
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        all.layers[layer] = trigonometric_layer(middle, half, layer);
+    }
+    return all;
 }
 
 // ---- transmittance/splat_fixed ----

@@ -15,20 +15,6 @@
 // binding coefficients: out, the layers of the map.
 // binding intervals: out, least and greatest occupied depth, 0..1; 1 and 0 where there is none. With BOUNDED only.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::bricks ----
 // summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
 // source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
@@ -78,6 +64,20 @@ fn run_of_samples(
     let distance = textureLoad(distances, brick, 0).x;
     let end = min(i + samples_alike(unit, step, size, distance), steps);
     return Run(select(end, i, distance == 0u), end);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -248,13 +248,6 @@ fn voxel_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
     return vec3<u32>(clamp(floor(unit * vec3<f32>(size)), vec3<f32>(0.0), last));
 }
 
-// ---- airlight::transmittance::bounded_map ----
-// summary: An extinction map whose series covers only the occupied interval of each texel's light ray.
-// source: extends Gautron et al., "Extinction transmittance maps" (2011): the same series, another domain.
-
-/// Shortest interval that is told from a point, over the range of the map.
-const LEAST_INTERVAL: f32 = 1e-6;
-
 // ---- airlight::transmittance::light_space ----
 // summary: Places in a transmittance map: texels across the light, and the depth along it.
 // source: core/light for the clip space of a directional light.
@@ -272,6 +265,25 @@ fn map_point(light: Light, size: vec2<f32>, texels: vec2<f32>, depth: f32) -> ve
 /// The range d of the map, metres: how far apart depths 0 and 1 are.
 fn map_range(light: Light) -> f32 {
     return length(light.world_from_clip[2].xyz);
+}
+
+// ---- airlight::transmittance::bounded_map ----
+// summary: An extinction map whose series covers only the occupied interval of each texel's light ray.
+// source: extends Gautron et al., "Extinction transmittance maps" (2011): the same series, another domain.
+
+/// Shortest interval that is told from a point, over the range of the map.
+const LEAST_INTERVAL: f32 = 1e-6;
+
+// ---- airlight::transmittance::medium ----
+// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
+// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
+
+/// More than any extinction may be, 1/m.
+const GREATEST_EXTINCTION: f32 = 1e6;
+
+/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
+fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
+    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
 }
 
 // ---- airlight::transmittance::map_form ----
@@ -328,18 +340,6 @@ fn walk_sum(sums: Contribution, step: f32) -> Contribution {
         extent = harmonics_next(extent);
     }
     return all;
-}
-
-// ---- airlight::transmittance::medium ----
-// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
-// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
-
-/// More than any extinction may be, 1/m.
-const GREATEST_EXTINCTION: f32 = 1e6;
-
-/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
-fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
-    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
 }
 
 // ---- transmittance/voxels ----

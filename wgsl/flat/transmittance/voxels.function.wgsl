@@ -14,20 +14,6 @@
 // binding brick_distances: of core/brick_distances, for the volume; or a single 0.
 // binding coefficients: out, the layers of the map.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::bricks ----
 // summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
 // source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
@@ -77,6 +63,20 @@ fn run_of_samples(
     let distance = textureLoad(distances, brick, 0).x;
     let end = min(i + samples_alike(unit, step, size, distance), steps);
     return Run(select(end, i, distance == 0u), end);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -264,26 +264,6 @@ fn voxel_at(unit: vec3<f32>, size: vec3<u32>) -> vec3<u32> {
     return vec3<u32>(clamp(floor(unit * vec3<f32>(size)), vec3<f32>(0.0), last));
 }
 
-// ---- airlight::transmittance::extinction_map ----
-// summary: Extinction transmittance maps: extinction along a light ray as a cosine series, transmittance from its integral.
-// source: Gautron, Delalandre, Marvie, "Extinction transmittance maps" (SIGGRAPH Asia 2011 sketches), Eq. 1 to 3.
-
-/// Coefficients of a group of a stretch of optical depth 1. `middle` and `extent`: harmonics of the depth of its middle and
-/// of its half length, `half`, all over the range of the map.
-fn extinction_coefficients(middle: Harmonics, extent: Harmonics, half: f32, group: u32) -> vec4<f32> {
-    return cosine_basis(middle, group) * cosine_spread(extent, half, group);
-}
-
-// ---- airlight::transmittance::function_map ----
-// summary: Transmittance function maps: transmittance itself along a light ray as a series.
-// source: Delalandre, Gautron, Marvie, Francois, "Transmittance function mapping" (I3D 2011).
-
-/// Mean of exp(-x) for x from 0 to `optical_depth`.
-fn mean_transmittance(optical_depth: f32) -> f32 {
-    let depth = max(optical_depth, 1e-12);
-    return one_minus_exp(depth) / depth;
-}
-
 // ---- airlight::transmittance::light_space ----
 // summary: Places in a transmittance map: texels across the light, and the depth along it.
 // source: core/light for the clip space of a directional light.
@@ -301,6 +281,38 @@ fn map_point(light: Light, size: vec2<f32>, texels: vec2<f32>, depth: f32) -> ve
 /// The range d of the map, metres: how far apart depths 0 and 1 are.
 fn map_range(light: Light) -> f32 {
     return length(light.world_from_clip[2].xyz);
+}
+
+// ---- airlight::transmittance::extinction_map ----
+// summary: Extinction transmittance maps: extinction along a light ray as a cosine series, transmittance from its integral.
+// source: Gautron, Delalandre, Marvie, "Extinction transmittance maps" (SIGGRAPH Asia 2011 sketches), Eq. 1 to 3.
+
+/// Coefficients of a group of a stretch of optical depth 1. `middle` and `extent`: harmonics of the depth of its middle and
+/// of its half length, `half`, all over the range of the map.
+fn extinction_coefficients(middle: Harmonics, extent: Harmonics, half: f32, group: u32) -> vec4<f32> {
+    return cosine_basis(middle, group) * cosine_spread(extent, half, group);
+}
+
+// ---- airlight::transmittance::medium ----
+// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
+// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
+
+/// More than any extinction may be, 1/m.
+const GREATEST_EXTINCTION: f32 = 1e6;
+
+/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
+fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
+    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
+}
+
+// ---- airlight::transmittance::function_map ----
+// summary: Transmittance function maps: transmittance itself along a light ray as a series.
+// source: Delalandre, Gautron, Marvie, Francois, "Transmittance function mapping" (I3D 2011).
+
+/// Mean of exp(-x) for x from 0 to `optical_depth`.
+fn mean_transmittance(optical_depth: f32) -> f32 {
+    let depth = max(optical_depth, 1e-12);
+    return one_minus_exp(depth) / depth;
 }
 
 // ---- airlight::transmittance::map_form ----
@@ -370,18 +382,6 @@ fn walk_sum(sums: Contribution, step: f32) -> Contribution {
         extent = harmonics_next(extent);
     }
     return all;
-}
-
-// ---- airlight::transmittance::medium ----
-// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
-// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
-
-/// More than any extinction may be, 1/m.
-const GREATEST_EXTINCTION: f32 = 1e6;
-
-/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
-fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
-    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
 }
 
 // ---- transmittance/voxels ----

@@ -14,20 +14,6 @@
 // binding brick_distances: of core/brick_distances, for the volume; or a single 0.
 // binding coefficients: out, the layers of the map.
 
-// ---- airlight::core::finite ----
-// summary: Replaces NaN and infinities in data that comes from outside.
-// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
-
-/// True if `x` is neither NaN nor infinite.
-fn is_finite(x: f32) -> bool {
-    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
-}
-
-/// `x` where it is finite, `fallback` elsewhere.
-fn finite_or(x: f32, fallback: f32) -> f32 {
-    return select(fallback, x, is_finite(x));
-}
-
 // ---- airlight::core::bricks ----
 // summary: Bricks of voxels over a volume, by which a march passes over empty space without a change of what it meets.
 // source: Levoy, "Efficient ray tracing of volume data" (1990); distances after Cohen and Sheffer, "Proximity clouds" (1994).
@@ -77,6 +63,20 @@ fn run_of_samples(
     let distance = textureLoad(distances, brick, 0).x;
     let end = min(i + samples_alike(unit, step, size, distance), steps);
     return Run(select(end, i, distance == 0u), end);
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
 }
 
 // ---- airlight::core::fourier_basis ----
@@ -193,6 +193,18 @@ fn map_range(light: Light) -> f32 {
     return length(light.world_from_clip[2].xyz);
 }
 
+// ---- airlight::transmittance::medium ----
+// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
+// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
+
+/// More than any extinction may be, 1/m.
+const GREATEST_EXTINCTION: f32 = 1e6;
+
+/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
+fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
+    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
+}
+
 // ---- airlight::transmittance::transmittance_moments ----
 // summary: Transmittance from moments of optical depth along a light ray: six of powers, or two complex trigonometric ones.
 // source: Muenstermann, Krumpen, Klein, Peters, "Moment-based order-independent transparency" (PACMCGIT 1(1), 2018).
@@ -272,18 +284,6 @@ fn walk_add(sums: Contribution, walk: Walk, weight: f32) -> Contribution {
 /// The sums of `walk_add` over stretches that are `step` long, as sums of `contribution`.
 fn walk_sum(sums: Contribution, step: f32) -> Contribution {
     return sums;
-}
-
-// ---- airlight::transmittance::medium ----
-// summary: Single scattering of a directional light along a view ray through a medium of varying extinction.
-// source: the equation of radiative transfer without multiple scattering; Gautron et al. (2011) for what lights a step.
-
-/// More than any extinction may be, 1/m.
-const GREATEST_EXTINCTION: f32 = 1e6;
-
-/// Extinction in 1/m of a value of the volume's texture; 0 for what is not finite or negative.
-fn extinction_of_value(value: f32, volume: VolumeSpace) -> f32 {
-    return clamp(finite_or(value * volume.value_scale, 0.0), 0.0, GREATEST_EXTINCTION);
 }
 
 // ---- transmittance/voxels ----
