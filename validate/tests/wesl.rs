@@ -27,12 +27,12 @@ impl Mangler for Told {
     }
 }
 
-/// Text without what [`Told`] added, or `airlight-validate` where two modules have one name.
+/// Text without what [`Told`] added.
 fn plain(library: &Library, text: &str) -> String {
-    let modules = library.modules().iter().map(|module| module.path.replacen("airlight::", "", 1));
-    let text = modules
-        .fold(text.to_owned(), |text, path| text.replace(&format!("_of_{}_x", path.replace("::", "_")), ""));
-    text.replace("fourier_basis_PI", "PI").replace("rectify_PI", "PI")
+    library.modules().iter().fold(text.to_owned(), |text, module| {
+        let path = module.path.replacen("airlight::", "", 1);
+        text.replace(&format!("_of_{}_x", path.replace("::", "_")), "")
+    })
 }
 
 /// The whole package, with `root` compiled.
@@ -83,6 +83,8 @@ fn counted(function: &str) -> String {
         let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
         let (word, after) = rest.split_at(end.max(letter.len_utf8()));
         rest = after;
+        // The one name that modules share, which `airlight-validate` puts the module's before.
+        let word = if word.ends_with("_PI") { "PI" } else { word };
         let base = word.trim_end_matches(|c: char| c.is_ascii_digit());
         // Members are not numbered, but parts of vectors may look like locals that are.
         let member = output.ends_with('.');
