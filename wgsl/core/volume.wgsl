@@ -28,7 +28,7 @@ fn segment_in_box(origin: vec3<f32>, along: vec3<f32>) -> vec2<f32> {
     let safe = select(along, vec3<f32>(1.0), still);
     let a = -origin / safe;
     let b = (vec3<f32>(1.0) - origin) / safe;
-    let inside = origin >= vec3<f32>(0.0) & origin <= vec3<f32>(1.0);
+    let inside = (origin >= vec3<f32>(0.0)) & (origin <= vec3<f32>(1.0));
     let enters = select(min(a, b), vec3<f32>(0.0), still);
     let leaves = select(max(a, b), select(vec3<f32>(-1.0), vec3<f32>(1.0), inside), still);
     let begins = max(max(enters.x, enters.y), max(enters.z, 0.0));
