@@ -51,16 +51,21 @@ export function* elements(about, length) {
 /**
  * Compares what a device wrote with what another one had written. An element is off where one of its values differs by more than
  * `absolute + relative * |expected|`, the two being `tolerance[kind]`; `worst` is the greatest difference in units of that, 0 where both are the same number or
- * both none.
+ * both none. `offWide` counts those that are off by more than `tolerance.times` times that. `tolerance.measure` says where the numbers
+ * stand for others: `{kind}` that bits are read as, `{scale}` to multiply by, `{weights}` of channels that are parts of one number.
  */
 export function compare(about, actual, expected, tolerance) {
     const [a, b] = [actual, expected].map((bytes) => new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength));
-    const result = { compared: 0, off: 0, worst: 0, at: null, values: null };
+    const { kind: as, scale = 1, weights } = tolerance.measure ?? {};
+    const { times = 1 } = tolerance;
+    const result = { compared: 0, off: 0, offWide: 0, worst: 0, at: null, values: null };
     for (const element of elements(about, expected.byteLength)) {
         let greatest = 0;
-        for (const [at, kind] of element) {
-            const read = READERS[kind][1];
-            const [x, y] = [read(a, at), read(b, at)];
+        const numbers = element.map(([at, kind]) => {
+            const read = READERS[as ?? kind][1];
+            return { kind: as ?? (scale === 1 ? kind : "f32"), x: scale * read(a, at), y: scale * read(b, at) };
+        });
+        for (const { kind, x, y } of weights ? [sum(numbers, weights)] : numbers) {
             if (Object.is(x, y) || x === y) continue;
             const [absolute, relative] = tolerance[kind];
             const difference = Math.abs(x - y);
@@ -71,6 +76,12 @@ export function compare(about, actual, expected, tolerance) {
         }
         result.compared += 1;
         if (greatest > 1) result.off += 1;
+        if (greatest > times) result.offWide += 1;
     }
     return result;
+}
+
+function sum(numbers, weights) {
+    const total = (side) => weights.reduce((all, weight, k) => all + weight * numbers[k][side], 0);
+    return { kind: numbers[0].kind, x: total("x"), y: total("y") };
 }

@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Verdicts on what a browser computed, and the list of failures that are known.
 
-/** Reads `key | output | reason` lines; `*` is any output. */
+/**
+ * Reads `key | output | limit | reason` lines; `*` is any output. A limit is `3 times` (within three times the tolerance the output
+ * does not fail) or `3 %` (no case has more beyond the tolerance).
+ */
 export function parseExpected(text) {
     const expected = [];
     for (const [index, line] of text.split("\n").entries()) {
         const content = line.trim();
         if (!content || content.startsWith("#")) continue;
         const parts = content.split(" | ").map((part) => part.trim());
-        if (parts.length !== 3 || parts.some((part) => !part)) {
-            throw new Error(`expected_failures, line ${index + 1}: write \`pass:permutation entry points | output | reason\``);
+        if (parts.length !== 4 || parts.some((part) => !part)) {
+            throw new Error(`expected_failures, line ${index + 1}: write \`pass:permutation entry points | output | limit | reason\``);
         }
-        const [key, output, reason] = parts;
-        expected.push({ key, output, reason, line: index + 1 });
+        const [key, output, limit, reason] = parts;
+        const [, number, unit] = /^([\d.]+) (times|%)$/.exec(limit) ?? [];
+        if (!number) throw new Error(`expected_failures, line ${index + 1}: a limit is \`3 times\` or \`3 %\`, not \`${limit}\``);
+        const bound = unit === "%" ? { share: Number(number) / 100 } : { times: Number(number) };
+        expected.push({ key, output, limit, ...bound, reason, line: index + 1 });
     }
     return expected;
 }
@@ -26,7 +32,7 @@ export function summarise(cases, tolerances) {
     for (const { key, scene, error, outputs = [] } of cases) {
         for (const output of error ? [{ name: "*", error }] : outputs) {
             const id = `${key} | ${output.name}`;
-            const fresh = { key, output: output.name, cases: 0, compared: 0, off: 0, worst: 0, share: 0, changed: false, errors: [] };
+            const fresh = { key, output: output.name, cases: 0, compared: 0, off: 0, worst: 0, share: 0, wide: 0, changed: false, errors: [] };
             const row = rows.get(id) ?? { ...fresh, tolerance: tolerances(key, output.name) };
             rows.set(id, row);
             row.cases += 1;
@@ -38,6 +44,7 @@ export function summarise(cases, tolerances) {
             row.off += output.off;
             // Each case must keep to the share by itself.
             row.share = Math.max(row.share, output.compared ? output.off / output.compared : 0);
+            row.wide = Math.max(row.wide, output.compared ? output.offWide / output.compared : 0);
             if (output.worst > row.worst) Object.assign(row, { worst: output.worst, where: { scene, at: output.at, values: output.values } });
             row.changed ||= output.changed;
         }
@@ -56,6 +63,12 @@ export function fault(row) {
     return null;
 }
 
+/** Whether a row fails by no more than is expected. */
+function isWithin(row, known) {
+    if (row.errors.length > 0) return false;
+    return known.times ? row.wide <= row.tolerance.outliers : row.share <= known.share;
+}
+
 /** Marks each row `passed`, `failed` or `expected`, and lists every finding, which are all to be mended. */
 export function judge(rows, expected, taken, snapshots) {
     const findings = [];
@@ -67,10 +80,11 @@ export function judge(rows, expected, taken, snapshots) {
             row.verdict = "passed";
             continue;
         }
-        row.verdict = known ? "expected" : "failed";
-        row.reason = known?.reason;
+        row.verdict = known && isWithin(row, known) ? "expected" : "failed";
+        Object.assign(row, { reason: known?.reason, limit: known?.limit });
         if (known) used.add(known);
-        else findings.push(`${row.key}, ${row.output}: ${row.fault}`);
+        const limit = known ? `, more than the expected failure's ${known.limit}` : "";
+        if (row.verdict === "failed") findings.push(`${row.key}, ${row.output}: ${row.fault}${limit}`);
     }
     for (const entry of expected) {
         if (!used.has(entry)) findings.push(`expected_failures, line ${entry.line}: ${entry.key}, ${entry.output} does not fail`);

@@ -41,6 +41,19 @@ test("integers and zero tolerance", () => {
     assert.equal(compare(about, actual, expected, { u32: [1, 0] }).off, 0);
 });
 
+test("numbers that stand for others", () => {
+    const [actual, expected] = [[[1, 512]], [[2, 0]]].map(([list]) => bytes(new Float32Array(list)));
+    const texel = { kind: "texture", format: "rg32float" };
+    const f32 = [1e-6, 0];
+    assert.equal(compare(texel, actual, expected, { f32 }).off, 1);
+    assert.equal(compare(texel, actual, expected, { f32, measure: { weights: [1, 1 / 512] } }).worst, 0);
+    const words = { kind: "buffer", words: { head: "", repeated: "u" } };
+    const [near, far] = [[1.0, 2.5], [1.0, 2.0]].map((list) => bytes(new Float32Array(list)));
+    const wide = compare(words, near, far, { f32: [0.2, 0], measure: { kind: "f32" }, times: 3 });
+    assert.deepEqual([wide.off, wide.offWide], [1, 0]);
+    assert.equal(compare(words, near, far, { u32: [0, 0], f32: [1e9, 0], measure: { scale: 0.5 } }).off, 0);
+});
+
 test("elements of a buffer", () => {
     const about = { kind: "buffer", words: { head: "u..f", repeated: "fu." } };
     assert.deepEqual([...elements(about, 48)], [
@@ -65,7 +78,7 @@ test("the strictest snapshot rules", () => {
 });
 
 const allowed = () => ({ outliers: 0.1 });
-const output = (off) => [{ name: "out", compared: 10, off, worst: 2, changed: true }];
+const output = (off, offWide = 0) => [{ name: "out", compared: 10, off, offWide, worst: 2, changed: true }];
 const fine = [{ key: "a/b:default main", outputs: output(1) }, { key: "a/c:default main", outputs: output(0) }];
 const judged = (cases, expected = "") => judge(summarise(cases, allowed), parseExpected(expected), TAKEN, SNAPSHOTS);
 
@@ -78,10 +91,16 @@ test("each case keeps to the share by itself", () => {
 });
 
 test("expected failures fail, or are findings", () => {
-    const line = "a/b:default main | out | rounds twice";
+    const line = "a/b:default main | out | 3 times | rounds twice";
     assert.deepEqual(judged([...fine, { key: "a/b:default main", outputs: output(9) }], line), []);
+    const worse = judged([...fine, { key: "a/b:default main", outputs: output(9, 5) }], line);
+    assert.match(worse[0], /more than the expected failure's 3 times$/);
+    const share = line.replace("3 times", "90 %");
+    assert.deepEqual(judged([...fine, { key: "a/b:default main", outputs: output(9, 5) }], share), []);
+    assert.equal(judged([...fine, { key: "a/b:default main", outputs: output(10) }], share).length, 1);
     assert.match(judged(fine, line)[0], /line 1: a\/b:default main, out does not fail/);
     assert.throws(() => parseExpected("a/b out why"), /line 1/);
+    assert.throws(() => parseExpected("a/b:c d | out | some | why"), /a limit is/);
 });
 
 test("no pass with a snapshot is passed over", () => {

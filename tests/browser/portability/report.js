@@ -82,7 +82,7 @@ export function report(about, rows, backEndText) {
     const { f16, f32, unorm, outliers } = DEFAULTS;
     const reasons = known.length === 0
         ? "There are none."
-        : table(["pass", "output", "why", "found"], known.map((row) => [code(row.key), code(row.output), row.reason, row.fault]));
+        : table(["pass", "output", "why", "found", "at most"], known.map((row) => [code(row.key), code(row.output), row.reason, row.fault, row.limit]));
     return `# Portability
 
 <!-- Written by \`make portability\`; do not edit. -->

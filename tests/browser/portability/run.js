@@ -8,6 +8,7 @@ import { join, resolve } from "node:path";
 import { chromiumPath, withPage } from "../chromium.js";
 import { judge, parseExpected, summarise } from "./judge.js";
 import { backEnds, report } from "./report.js";
+import { measureOf } from "./measures.js";
 import { readSnapshots, toleranceOf } from "./tolerances.js";
 
 const ROOT = resolve(import.meta.dirname, "../../..");
@@ -75,11 +76,15 @@ async function main() {
     const start = Date.now();
     const recorded = await readRecorded();
     const snapshots = await readSnapshots(join(ROOT, "tests/tests/snapshots"));
-    const tolerances = (key, output) => toleranceOf(key, output, recorded.taken, snapshots);
+    const expected = parseExpected(await readFile(join(import.meta.dirname, "expected_failures"), "utf8"));
+    const tolerances = (key, output) => ({
+        ...toleranceOf(key, output, recorded.taken, snapshots),
+        measure: measureOf(key, output),
+        times: expected.find((entry) => entry.key === key && entry.output === output)?.times,
+    });
     const { info, browser, results } = await repeatAll(recorded.cases, tolerances);
     const cases = recorded.cases.map(({ key, scene }, k) => ({ key, scene, ...results[k] }));
     const rows = summarise(cases, tolerances);
-    const expected = parseExpected(await readFile(join(import.meta.dirname, "expected_failures"), "utf8"));
     const findings = judge(rows, expected, recorded.taken, snapshots);
     const about = { browser, info, devices: [...recorded.devices], cases: cases.length, snapshots: snapshots.size };
     const files = { flat: recorded.flat.size, composed: recorded.composed.size };
@@ -90,7 +95,7 @@ async function main() {
     const known = rows.filter((row) => row.verdict === "expected").length;
     console.log(`${cases.length} cases of ${new Set(rows.map((row) => row.key)).size} passes in ${seconds} s, ${browser}`);
     console.log(`${passed} outputs within tolerance, ${known} expected failures, ${findings.length} findings`);
-    findings.forEach((finding) => console.error(`portability: ${finding}`));
+    findings.forEach((finding) => console.error(`portability: ${finding.split("\n")[0]}`));
     process.exitCode = findings.length > 0 ? 1 : 0;
 }
 
