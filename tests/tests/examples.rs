@@ -42,8 +42,7 @@ fn picture_of_the_example() -> Picture {
         copied += 1;
     }
     assert_eq!(copied, 7, "the README lists the flat files");
-    let picture = example::render(folder.path(), &bunny(), SIZE).unwrap();
-    Picture { size: SIZE, pixels: picture.into_raw() }
+    Picture { size: SIZE, pixels: example::render(folder.path(), &bunny(), SIZE).unwrap() }
 }
 
 /// The same scene through the host, with its own raster, its own shadow map and its own composition of the modules.

@@ -27,8 +27,9 @@ const RECTIFIED: [u32; 2] = [1024, 1024];
 const RANK_BITS: u32 = 12;
 const SHADOW_MAP: [u32; 2] = [2048, 2048];
 
-/// Draws the scene around the mesh in an .obj file. `shaders`: the folder with `core/` and `scattering/`, the flat files.
-pub fn render(shaders: &Path, mesh: &Path, size: [u32; 2]) -> Result<image::RgbaImage, Box<dyn Error>> {
+/// Draws the scene around the mesh in an .obj file: RGBA, 8 bits, row by row. `shaders`: the folder with `core/` and
+/// `scattering/`, the flat files.
+pub fn render(shaders: &Path, mesh: &Path, size: [u32; 2]) -> Result<Vec<u8>, Box<dyn Error>> {
     let scene = scene(mesh, size)?;
     let gpu = Gpu::new(shaders)?;
 
@@ -306,7 +307,7 @@ impl<'a> Gpu<'a> {
     }
 
     /// The texels of an 8-bit texture.
-    fn read(&self, texture: &wgpu::Texture) -> Result<image::RgbaImage, Box<dyn Error>> {
+    fn read(&self, texture: &wgpu::Texture) -> Result<Vec<u8>, Box<dyn Error>> {
         let size = texture.size();
         // Rows of a copy begin at multiples of 256 bytes.
         let stride = (4 * size.width).next_multiple_of(256);
@@ -325,8 +326,7 @@ impl<'a> Gpu<'a> {
         self.device.poll(wgpu::PollType::wait_indefinitely())?;
         let mapped = buffer.get_mapped_range(..)?;
         let rows = mapped.chunks_exact(stride as usize);
-        let texels = rows.flat_map(|row| &row[..4 * size.width as usize]).copied().collect();
-        image::RgbaImage::from_raw(size.width, size.height, texels).ok_or_else(|| "an empty picture".into())
+        Ok(rows.flat_map(|row| &row[..4 * size.width as usize]).copied().collect())
     }
 }
 
