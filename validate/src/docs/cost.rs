@@ -29,8 +29,11 @@ impl AddAssign for Cost {
     }
 }
 
-/// Costs of the functions of a module and of its entry points, by name.
-pub fn costs(module: &Module) -> (Vec<(String, Cost)>, Vec<(String, Cost)>) {
+/// Costs with the names of what they are of.
+pub type Named = Vec<(String, Cost)>;
+
+/// Costs of the functions of a module, and of its entry points.
+pub fn costs(module: &Module) -> (Named, Named) {
     // Of a valid module every function comes after those that it calls.
     let mut known: Vec<Cost> = Vec::new();
     let mut functions = Vec::new();

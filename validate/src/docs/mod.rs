@@ -15,7 +15,7 @@ mod text;
 mod unsaid;
 
 pub use book::{BEGIN, END, summary};
-pub use cost::{Cost, costs};
+pub use cost::{Cost, Named, costs};
 pub use header::{Budget, Header, header};
 pub use items::{Item, Kind, Part, described, items};
 pub use pictures::Pictures;

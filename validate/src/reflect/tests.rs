@@ -75,7 +75,7 @@ fn filtering_is_seen_through_parameters() {
         reflection.binding("cells").unwrap().kind,
         BindingKind::StorageTexture {
             dimension: TextureDimension::D2,
-            format: StorageFormat::R32Uint,
+            format: naga::StorageFormat::R32Uint,
             access: Access::ReadWrite
         }
     );
