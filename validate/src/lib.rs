@@ -45,8 +45,9 @@ pub mod list;
 #[cfg(feature = "command")]
 pub mod manifest;
 #[cfg(feature = "command")]
-pub mod vendor;
 pub mod tree;
+#[cfg(feature = "command")]
+pub mod vendor;
 
 pub use compose::{Composed, core_capabilities};
 pub use definitions::{Definition, Definitions};

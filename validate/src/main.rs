@@ -5,10 +5,7 @@
 mod book;
 mod command;
 
-use airlight_validate::{
-    check::{Format, Tool},
-    vendor::Form,
-};
+use airlight_validate::{check::Format, vendor::Form};
 use clap::{Parser, Subcommand};
 use command::Stop;
 use std::{
@@ -137,14 +134,12 @@ fn main() -> ExitCode {
     // Panics of back ends are caught and reported as findings; their traces would only be noise.
     std::panic::set_hook(Box::new(|_| {}));
     let done = std::panic::catch_unwind(|| match arguments.command {
-        Job::Check { dir, format, require, quiet } => command::check::run(dir, format, require, quiet),
         Job::Manifest { dir, check, out, release } => command::manifest::run(&dir, check, out, release),
         Job::Abi { old, new } => command::abi::run(&old, &new),
         Job::Docs { dir, out, check } => command::docs::run(&dir, &out, check),
         Job::List { dir, check } => command::list::run(&dir, check),
         Job::Check(arguments) => command::check::run(arguments),
         Job::Explain { name } => command::explain::run(name.as_deref()),
-        Job::Manifest { dir, check, out } => command::manifest::run(&dir, check, out),
         Job::Flat { pass, dir } => command::flat::run(&pass, dir),
         Job::Vendor { dir, passes, form, force } => command::vendor::run(&dir, &passes, form, force),
         Job::Verify { dir, format } => command::verify::run(&dir, format),

@@ -22,17 +22,6 @@ pub use report::{Finding, Format, Report, Severity};
 pub use tools::Tool;
 
 use crate::{Definitions, Error, Library, Location, ModuleSource};
-use std::{
-    any::Any,
-    collections::BTreeSet,
-    ffi::OsString,
-    sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
-use crate::{Definitions, Error, Library, Location};
 use std::{any::Any, collections::BTreeSet, ffi::OsString};
 use unit::{Context, Subject};
 
@@ -155,37 +144,12 @@ fn name_unused(library: &Library, findings: &mut [Finding]) {
 /// Modules with each set of definitions that a permutation gives them, then the permutations.
 fn subjects(library: &Library) -> Vec<Subject> {
     let mut subjects = Vec::new();
-    for (module, sets) in definitions_of_modules(library) {
-    // Every permutation, and the modules that it reaches.
-    let mut importers = Vec::new();
-    for pass in library.passes() {
-        for permutation in library.permutations.get(&pass.name).into_iter().flatten() {
-            let definitions = &permutation.definitions;
-            importers.push((definitions, library.reached(&pass.source, definitions)));
-        }
-    }
     let is_checked = |file: &str| library.foreign.as_ref().is_none_or(|foreign| foreign.is_checked(file));
-    for module in library.modules().iter().filter(|module| is_checked(&module.file)) {
+    for (module, sets) in definitions_of_modules(library) {
         // With an entry point it is checked as a shader.
-        if library.foreign.is_some() && library.pass(&module.file).is_ok() {
+        let is_shader = library.foreign.is_some() && library.pass(&module.file).is_ok();
+        if is_shader || !is_checked(&module.file) {
             continue;
-        }
-        let mut reads = BTreeSet::new();
-        for other in library.closure(std::slice::from_ref(&module.path)) {
-            reads.extend(lint::used_definitions(&other.source).into_keys());
-        }
-        let mut sets: BTreeSet<Definitions> = importers
-            .iter()
-            .filter(|(_, reached)| reached.contains(&module.path))
-            .map(|(definitions, _)| definitions.iter().filter(|(name, _)| reads.contains(*name)).collect())
-            .collect();
-        let own = library.permutations.get(&module.path).filter(|_| library.foreign.is_some());
-        if let Some(own) = own {
-            sets = own.iter().map(|permutation| permutation.definitions.clone()).collect();
-        }
-        if sets.is_empty() {
-            let base = library.foreign.as_ref().map(|foreign| foreign.base.iter());
-            sets.insert(base.into_iter().flatten().filter(|(name, _)| reads.contains(*name)).collect());
         }
         for definitions in sets {
             subjects.push(Subject::Module { path: module.path.clone(), definitions });
@@ -203,8 +167,9 @@ fn subjects(library: &Library) -> Vec<Subject> {
     subjects
 }
 
-/// Every permutation with the modules that it reaches.
-fn importers(library: &Library) -> Vec<(&Definitions, BTreeSet<String>)> {
+/// Every module with the sets of definitions that permutations give it; one without any where none imports it.
+pub(crate) fn definitions_of_modules(library: &Library) -> Vec<(&ModuleSource, BTreeSet<Definitions>)> {
+    // Every permutation, and the modules that it reaches.
     let mut importers = Vec::new();
     for pass in library.passes() {
         for permutation in library.permutations.get(&pass.name).into_iter().flatten() {
@@ -212,34 +177,27 @@ fn importers(library: &Library) -> Vec<(&Definitions, BTreeSet<String>)> {
             importers.push((definitions, library.reached(&pass.source, definitions)));
         }
     }
-    importers
-}
-
-/// The sets of definitions that permutations give a module; the empty one where none imports it.
-fn sets(
-    library: &Library,
-    importers: &[(&Definitions, BTreeSet<String>)],
-    module: &ModuleSource,
-) -> BTreeSet<Definitions> {
-    let mut reads = BTreeSet::new();
-    for other in library.closure(std::slice::from_ref(&module.path)) {
-        reads.extend(lint::used_definitions(&other.source).into_keys());
-    }
-    let mut sets: BTreeSet<Definitions> = importers
-        .iter()
-        .filter(|(_, reached)| reached.contains(&module.path))
-        .map(|(definitions, _)| definitions.iter().filter(|(name, _)| reads.contains(*name)).collect())
-        .collect();
-    if sets.is_empty() {
-        sets.insert(Definitions::new());
-    }
-    sets
-}
-
-/// Every module with the sets of definitions that permutations give it.
-pub(crate) fn definitions_of_modules(library: &Library) -> Vec<(&ModuleSource, BTreeSet<Definitions>)> {
-    let importers = importers(library);
-    library.modules().iter().map(|module| (module, sets(library, &importers, module))).collect()
+    let sets = |module: &ModuleSource| {
+        let own = library.permutations.get(&module.path).filter(|_| library.foreign.is_some());
+        if let Some(own) = own {
+            return own.iter().map(|permutation| permutation.definitions.clone()).collect();
+        }
+        let mut reads = BTreeSet::new();
+        for other in library.closure(std::slice::from_ref(&module.path)) {
+            reads.extend(lint::used_definitions(&other.source).into_keys());
+        }
+        let mut sets: BTreeSet<Definitions> = importers
+            .iter()
+            .filter(|(_, reached)| reached.contains(&module.path))
+            .map(|(definitions, _)| definitions.iter().filter(|(name, _)| reads.contains(*name)).collect())
+            .collect();
+        if sets.is_empty() {
+            let base = library.foreign.as_ref().map(|foreign| foreign.base.iter());
+            sets.insert(base.into_iter().flatten().filter(|(name, _)| reads.contains(*name)).collect());
+        }
+        sets
+    };
+    library.modules().iter().map(|module| (module, sets(module))).collect()
 }
 
 /// What a panic said.

@@ -247,7 +247,7 @@ fn compile(
                     "frag" => "ps",
                     _ => "cs",
                 };
-                let file = context.folder.join(format!("{number}.hlsl"));
+                let file = context.folder.path().join(format!("{number}.hlsl"));
                 tools::dxc(program, (text, entry_point), stage, &file)
             }
             None => Ok(()),

@@ -8,7 +8,7 @@ mod install;
 mod lock;
 mod verify;
 
-use crate::{Definitions, Error, Library, Permutation, flat};
+use crate::{Definitions, Error, Library, Permutation, flat, wesl};
 pub use install::{Installed, install};
 pub use lock::{LOCK_FILE, Lock};
 use serde::{Deserialize, Serialize};
@@ -31,6 +31,8 @@ pub enum Form {
     NagaOil,
     /// A stand-alone file for each permutation.
     Flat,
+    /// The modules that the passes import, as a WESL package; those without a WESL form, such as callbacks, are left out.
+    Wesl,
 }
 
 /// What can go wrong.
@@ -95,7 +97,8 @@ impl fmt::Display for Request {
 /// The files that passes need in a form, licences included: each file's path with `/`, and its text.
 ///
 /// With [`Form::NagaOil`] these are a folder that [`Library::from_directory`] reads: the modules that any permutation
-/// imports, and a `permutations` file a system with the permutations that are asked for and `default`.
+/// imports, and a `permutations` file a system with the permutations that are asked for and `default`. With [`Form::Wesl`]
+/// they are a package of the modules that the passes import.
 ///
 /// # Errors
 /// An unknown pass or permutation; a pass that does not compose.
@@ -118,6 +121,7 @@ pub fn package(
     let mut files = match form {
         Form::NagaOil => sources(library, &chosen)?,
         Form::Flat => flat_files(library, &chosen)?,
+        Form::Wesl => wesl_package(library, &chosen)?,
     };
     let licences = airlight_wgsl::LICENCES.iter();
     files.extend(licences.map(|(file, text)| ((*file).to_owned(), (*text).to_owned())));
@@ -136,6 +140,18 @@ fn flat_files(library: &Library, chosen: &Chosen) -> Result<BTreeMap<String, Str
         }
     }
     Ok(files)
+}
+
+/// Bindings and entry points are the engine's own in WESL, so the passes themselves stay behind.
+fn wesl_package(library: &Library, chosen: &Chosen) -> Result<BTreeMap<String, String>, Error> {
+    let mut imports = Vec::new();
+    for pass in chosen.keys() {
+        imports.extend(library.pass(pass)?.imports.iter().cloned());
+    }
+    let has_form: BTreeSet<&str> = wesl::modules(library).into_iter().collect();
+    let needed = library.closure(&imports).into_iter().map(|module| module.path.as_str());
+    let modules: Vec<&str> = needed.filter(|path| has_form.contains(path)).collect();
+    Ok(wesl::package(library, &modules)?.into_iter().collect())
 }
 
 fn sources(library: &Library, chosen: &Chosen) -> Result<BTreeMap<String, String>, Error> {
