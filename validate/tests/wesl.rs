@@ -65,7 +65,7 @@ fn whole(library: &Library, path: &str, definitions: &Definitions) -> Composed {
 
 /// Each function as naga writes it, by name.
 fn functions(library: &Library, composed: &Composed) -> BTreeMap<String, String> {
-    let text = plain(library, &flat::write(composed).unwrap());
+    let text = format!("\n{}", plain(library, &flat::write(composed).unwrap()));
     let functions = text.split("\nfn ").skip(1).map(|function| {
         let end = function.find("\n}").unwrap();
         let name = function.split('(').next().unwrap();
@@ -88,7 +88,7 @@ fn counted(function: &str) -> String {
         let base = word.trim_end_matches(|c: char| c.is_ascii_digit());
         // Members are not numbered, but parts of vectors may look like locals that are.
         let member = output.ends_with('.');
-        let numbered = !member && base.len() < word.len() && (base.ends_with('_') || base == "_e");
+        let numbered = !member && (base.ends_with('_') || base == "_e");
         let base = if numbered { base.trim_end_matches('_') } else { word };
         if member {
             output += word;
