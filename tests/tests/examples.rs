@@ -8,11 +8,10 @@ mod gpu;
 #[path = "support/snapshot.rs"]
 mod snapshot;
 
-use airlight::Stage;
 use airlight::core::{DepthRange, PerspectiveView, Raster, Sky, Tonemap};
 use airlight::data::Mesh;
 use airlight::scattering::{Composite, Medium, Prefiltered, Settings, Visibility};
-use airlight::stage::{Lighting, Setting};
+use airlight::{Lighting, Setting, Stage};
 use airlight_example_wgpu as example;
 use glam::Vec3;
 use gpu::{gpu, shaders};
