@@ -15,6 +15,9 @@ use std::time::Duration;
 const DEFAULT_CASES: [Content; 4] = [Content::Finite, Content::NonFinite, Content::Rough, Content::Extreme];
 /// Of each of the others.
 const OTHER_CASES: [Content; 2] = [Content::NonFinite, Content::Rough];
+/// Passes whose buffers must fit together for finite results: in ones that are too short all voxels share a few numbers, which grow
+/// with every entry point.
+const GROWING: [&str; 1] = ["inverse/solver_volume"];
 /// The longest submission. An idle machine of two cores takes at most a tenth.
 const LONGEST: Duration = Duration::from_secs(30);
 
@@ -110,7 +113,7 @@ fn hold_permutation(
             }
         }
         let mut wrong = Vec::new();
-        if content.is_sane() {
+        if content.is_sane() && !GROWING.contains(&composed.pass.as_str()) {
             wrong.extend(first.written.iter().filter_map(not_finite));
         }
         for (second, _) in &ran[1..] {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0 OR Unlicense
 // summary: Lights what `iso_raycast` has written with DEFERRED: Phong lighting by colour and normal.
 // source: dissertation on painterly volume rendering, 4.1.4, Eq. 4.2: illumination deferred to a later step.
+// note: What is not finite counts as 0.
 // binding camera: the camera that the rays were cast with.
 // binding lighting: how the surface is lit.
 // binding color: unlit colour, and 1 where the surface is seen.
@@ -8,6 +9,7 @@
 // binding picture: out, rgba16float: linear RGB radiance, premultiplied, and 1 where the surface is seen.
 
 #import airlight::core::camera::{Camera, view_ray, ndc_from_pixel}
+#import airlight::core::finite::{finite_or, finite_or_rgb}
 #import airlight::painterly::iso_surface::{SurfaceLighting, phong}
 
 @group(#{GROUP}) @binding(0) var<uniform> camera: Camera;
@@ -21,8 +23,9 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= textureDimensions(picture)) {
         return;
     }
-    let unlit = textureLoad(color, id.xy, 0);
-    let stored = textureLoad(surface, id.xy, 0).xyz;
+    let texel = textureLoad(color, id.xy, 0);
+    let unlit = vec4<f32>(finite_or_rgb(texel.rgb, 0.0), finite_or(texel.a, 0.0));
+    let stored = finite_or_rgb(textureLoad(surface, id.xy, 0).xyz, 0.0);
     // Half floats that were cut short are too short for a high power.
     let normal = stored / max(length(stored), 1e-6);
     let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(id.xy) + 0.5));
