@@ -16,11 +16,14 @@
 // summary: A blur that stops at edges, of how mean directions differ from half their normals: what neighbours count, and the way back.
 // source: thesis 3.4; Laine et al., "Incremental instant radiosity" (2007).
 
+/// Most pixels that are averaged.
+const MOST_TAPS: u32 = 16u;
+
 /// A blur along an axis. 32 bytes.
 struct BentBlur {
     /// (1, 0) or (0, 1).
     axis: vec2<u32>,
-    /// Pixels that are averaged, from 1 up: the side of the sampling pattern.
+    /// Pixels that are averaged, 1..MOST_TAPS: the side of the sampling pattern.
     taps: u32,
     /// Metres from the tangent plane at which a neighbour counts no more, above 0.
     reach: f32,
@@ -144,8 +147,9 @@ fn blur_bent(@builtin(global_invocation_id) id: vec3<u32>) {
     let normal = seen_normal(textureLoad(normals, min(own, last_normal), 0).xyz, vec3<f32>(0.0));
     var sum = vec4<f32>(0.0);
     var weights = 0.0;
-    for (var tap = 0u; tap < blur.taps; tap++) {
-        let at = own + vec2<i32>(blur.axis) * (i32(tap) - i32(blur.taps / 2u));
+    let taps = min(blur.taps, MOST_TAPS);
+    for (var tap = 0u; tap < taps; tap++) {
+        let at = own + vec2<i32>(blur.axis) * (i32(tap) - i32(taps / 2u));
         let inside = all(at >= vec2<i32>(0)) && all(at < size);
         let other = clamp(at, vec2<i32>(0), size - 1);
         let there = seen_surface(camera, other, textureLoad(depth, other, 0).x);

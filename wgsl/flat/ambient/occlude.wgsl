@@ -62,6 +62,11 @@ fn mean_direction(sum: BentSum) -> vec3<f32> {
 // summary: Whether what is seen at a pixel is in a surface point's way, and how much.
 // source: thesis Eq. 3.4 and Listing 3.1; Bavoil et al., "Image-space horizon-based ambient occlusion" (2008); Therrien et al., "Screen space indirect lighting with visibility bitmask" (2023).
 
+/// Most directions a pixel.
+const MOST_SAMPLES: u32 = 256u;
+/// Most steps along each.
+const MOST_STEPS: u32 = 256u;
+
 /// How occlusion is looked for. 32 bytes.
 struct OcclusionSettings {
     /// Occluders count up to this distance, metres, above 0.
@@ -70,9 +75,9 @@ struct OcclusionSettings {
     thickness: f32,
     /// Sine of the elevation over the tangent plane from which on something occludes: 0..1.
     bias: f32,
-    /// Directions a pixel, from 1 up; slices of the hemisphere with HORIZON and BITMASK.
+    /// Directions a pixel, 1..MOST_SAMPLES; slices of the hemisphere with HORIZON and BITMASK.
     samples: u32,
-    /// Steps along each, from 1 up.
+    /// Steps along each, 1..MOST_STEPS.
     steps: u32,
     /// Side of the square of pixels that have different directions, from 1 up.
     side: u32,
@@ -279,7 +284,7 @@ fn add_sample(sum: BentSum, index: u32, place: vec3<f32>, normal: vec3<f32>, vie
     let direction = tangent_frame(normal) * hemisphere_direction(sample_place(index, settings.samples, shift));
     var visibility = 1.0;
     var outlier = false;
-    for (var step = 0u; step < settings.steps; step++) {
+    for (var step = 0u; step < min(settings.steps, MOST_STEPS); step++) {
         let part = (f32(step) + shift.steps) / f32(settings.steps);
         let reached = place + direction * (settings.radius * part * part);
         let at = seen_place(camera, reached);
@@ -307,7 +312,7 @@ fn occlude(@builtin(global_invocation_id) id: vec3<u32>) {
     let normal = seen_normal(texel, viewer);
     let shift = sample_shift(id.xy, settings.side, settings.frame);
     var sum = bent_nothing();
-    let samples = select(0u, settings.samples, seen.known);
+    let samples = select(0u, min(settings.samples, MOST_SAMPLES), seen.known);
     for (var index = 0u; index < samples; index++) {
         sum = add_sample(sum, index, seen.place, normal, viewer, shift);
     }

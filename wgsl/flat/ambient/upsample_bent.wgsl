@@ -22,7 +22,7 @@
 struct BentBlur {
     /// (1, 0) or (0, 1).
     axis: vec2<u32>,
-    /// Pixels that are averaged, from 1 up: the side of the sampling pattern.
+    /// Pixels that are averaged, 1..MOST_TAPS: the side of the sampling pattern.
     taps: u32,
     /// Metres from the tangent plane at which a neighbour counts no more, above 0.
     reach: f32,

@@ -42,11 +42,14 @@ fn all_channels(value: f32) -> f32 {
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
 
+/// Most slices of a volume.
+const MOST_SLICES: u32 = 4096u;
+
 /// A view of the volume: rays are affine in the pixel. 208 bytes.
 struct SliceView {
     /// Where the ray through the corner of the picture begins.
     origin: vec3<f32>,
-    /// How many slices, from 1 up.
+    /// How many slices, 1..MOST_SLICES.
     slices: u32,
     /// Direction of that ray, of any length.
     direction: vec3<f32>,
@@ -167,7 +170,7 @@ fn support_of(voxel: vec3<u32>, size: vec3<u32>, reach: f32) -> Support {
 
 /// First slice whose middle plane crosses the support and the one past the last.
 fn slices_of_support(view: SliceView, support: Support) -> vec2<u32> {
-    let count = f32(view.slices);
+    let count = f32(min(view.slices, MOST_SLICES));
     let ends = vec2<f32>(dot(support.low, view.axis), dot(support.high, view.axis)) * count - 0.5;
     // At the ends of a support there is nothing, but at the faces of the box.
     return vec2<u32>(clamp(vec2<f32>(ceil(ends.x + 1e-3), floor(ends.y - 1e-3) + 1.0), vec2<f32>(0.0), vec2<f32>(count)));
@@ -295,10 +298,12 @@ fn pixels_of_slice(view: SliceView, support: Support, slice: u32) -> vec4<i32> {
 @group(0) @binding(6) var<storage, read> solved: array<f32>;
 @group(0) @binding(7) var<storage, read_write> collected: array<f32>;
 
-/// Pixels in the rows that are projected back.
+/// Pixels in the rows that are projected back, and in the picture.
 fn in_rows(pixels: vec4<i32>) -> vec4<i32> {
     let first = i32(rows.first);
-    return vec4<i32>(pixels.x, max(pixels.y, first), pixels.z, min(pixels.w, first + i32(rows.count) - 1));
+    let last = vec2<i32>(textureDimensions(spans)) - 1;
+    let end = min(first + i32(rows.count) - 1, last.y);
+    return vec4<i32>(pixels.x, max(pixels.y, first), min(pixels.z, last.x), min(pixels.w, end));
 }
 
 /// Where `weighed` has a pixel's step in a slice.

@@ -18,7 +18,7 @@ const NUMBERS: u32 = 4u;
 struct LightNumber {
     /// From 0.
     index: u32,
-    /// How many lights there are.
+    /// How many lights there are, 1..MOST_LIGHTS.
     count: u32,
     /// Groups that each light has sums of.
     groups: u32,

@@ -42,11 +42,14 @@ fn group_sum(thread: u32, value: vec4<f32>) -> vec4<f32> {
 const CHANNELS: u32 = 1u;
 const NUMBERS: u32 = 1u;
 
+/// Most lights that are solved for.
+const MOST_LIGHTS: u32 = 1024u;
+
 /// One of several lights. 16 bytes.
 struct LightNumber {
     /// From 0.
     index: u32,
-    /// How many lights there are.
+    /// How many lights there are, 1..MOST_LIGHTS.
     count: u32,
     /// Groups that each light has sums of.
     groups: u32,
@@ -75,7 +78,7 @@ fn light_picture(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let pixel = id.y * size.x + id.x;
     var sum = vec4<f32>(0.0);
-    for (var light = 0u; light < number.count; light++) {
+    for (var light = 0u; light < min(number.count, MOST_LIGHTS); light++) {
         for (var channel = 0u; channel < CHANNELS; channel++) {
             let coefficient = coefficients[min(NUMBERS * light + channel, arrayLength(&coefficients) - 1u)];
             sum[channel] += coefficient * column_at(light, pixel, size.x * size.y, channel);

@@ -55,7 +55,7 @@ fn all_channels(value: f32) -> f32 {
 struct SliceView {
     /// Where the ray through the corner of the picture begins.
     origin: vec3<f32>,
-    /// How many slices, from 1 up.
+    /// How many slices, 1..MOST_SLICES.
     slices: u32,
     /// Direction of that ray, of any length.
     direction: vec3<f32>,
@@ -151,7 +151,7 @@ fn light_depths(@builtin(global_invocation_id) id: vec3<u32>) {
     var depth = all_channels(0.0);
     textureStore(depths, vec3<u32>(id.xy, 0u), texel_of(depth));
     let step = 1.0 / along.y;
-    for (var layer = 0u; layer < view.slices; layer++) {
+    for (var layer = 0u; layer < min(view.slices, textureDimensions(depths).z); layer++) {
         let place = ray.origin + ray.direction * ((f32(layer) + 0.5 - along.x) * step);
         depth += channels_of(triangle_field(extinction, place)) * (step * ray.metres);
         textureStore(depths, vec3<u32>(id.xy, layer + 1u), texel_of(depth));

@@ -51,7 +51,7 @@ const NUMBERS: u32 = 1u;
 struct LightNumber {
     /// From 0.
     index: u32,
-    /// How many lights there are.
+    /// How many lights there are, 1..MOST_LIGHTS.
     count: u32,
     /// Groups that each light has sums of.
     groups: u32,
@@ -104,7 +104,7 @@ fn volume_products(
 @compute @workgroup_size(128)
 fn add_products(@builtin(local_invocation_index) thread: u32, @builtin(workgroup_id) group: vec3<u32>) {
     var part = vec4<f32>(0.0);
-    for (var place = thread; place < number.groups; place += GROUP_THREADS) {
+    for (var place = thread; place < min(number.groups, arrayLength(&sums)); place += GROUP_THREADS) {
         part += sums[min(group.x * number.groups + place, arrayLength(&sums) - 1u)];
     }
     let sum = group_sum(thread, part);

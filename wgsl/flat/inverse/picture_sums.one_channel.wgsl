@@ -3,13 +3,33 @@
 // summary: What is wrong with a picture, or the picture itself, weighed, and sums of squares over it.
 // source: thesis 7.4.1: c = W a - o, and per-pixel weights of 7.4.2.
 // note: Dispatch over the picture: weigh_difference before the picture is projected back, weigh_picture of the picture of a direction. Sums of
-// note: groups are added up by inverse/solver_scalars, always in the same order.
+// note: groups are added up by inverse/solver_scalars, always in the same order. A channel of `wanted` or a weight that is not finite counts for
+// note: nothing.
 // binding rows: `first` is where the sums of this picture begin, groups.
 // binding rendered: the picture, r32float or rgba32float.
 // binding wanted: the picture that is wanted, likewise; for weigh_difference.
 // binding weights: how much each pixel counts, from 0 up, r32float.
 // binding difference: out, what was weighed, like `rendered`.
 // binding sums: out, of each group, weighed sum of squares of the difference, or of the picture, by channel.
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+}
 
 // ---- airlight::inverse::group_sum ----
 // summary: The sum over a group of 128 threads, always added up in the same order.
@@ -82,8 +102,9 @@ fn weigh_difference(
     let size = textureDimensions(rendered);
     let inside = all(id.xy < size);
     let pixel = min(id.xy, size - 1u);
-    let weight = textureLoad(weights, pixel, 0).x;
-    let off = (textureLoad(rendered, pixel, 0) - textureLoad(wanted, pixel, 0)) * vec4<f32>(1.0, 1.0, 1.0, 0.0);
+    let weight = finite_or(textureLoad(weights, pixel, 0).x, 0.0);
+    let apart = textureLoad(rendered, pixel, 0).rgb - textureLoad(wanted, pixel, 0).rgb;
+    let off = vec4<f32>(finite_or_rgb(apart, 0.0), 0.0);
     if inside {
         textureStore(difference, pixel, weight * off);
     }
@@ -100,7 +121,7 @@ fn weigh_picture(
     let size = textureDimensions(rendered);
     let pixel = min(id.xy, size - 1u);
     let value = textureLoad(rendered, pixel, 0) * vec4<f32>(1.0, 1.0, 1.0, 0.0);
-    let weight = textureLoad(weights, pixel, 0).x;
+    let weight = finite_or(textureLoad(weights, pixel, 0).x, 0.0);
     let inside = all(id.xy < size);
     if inside {
         textureStore(difference, pixel, weight * value);

@@ -107,11 +107,14 @@ fn step_weight(depth: ptr<function, vec3<f32>>, extinction: vec3<f32>, metres: f
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
 
+/// Most steps of any bent ray.
+const MOST_RAY_STEPS: u32 = 65536u;
+
 /// A view of the volume: rays are affine in the pixel. 208 bytes.
 struct SliceView {
     /// Where the ray through the corner of the picture begins.
     origin: vec3<f32>,
-    /// How many slices, from 1 up.
+    /// How many slices, 1..MOST_SLICES.
     slices: u32,
     /// Direction of that ray, of any length.
     direction: vec3<f32>,
@@ -155,7 +158,7 @@ struct SliceView {
 struct RaySteps {
     /// Length of a step of a bent ray, metres, above 0.
     metres: f32,
-    /// Most steps of a bent ray.
+    /// Most steps of a bent ray, 0..MOST_RAY_STEPS.
     most: u32,
     reserved_a: u32,
     reserved_b: u32,
@@ -331,7 +334,7 @@ fn render_slices(@builtin(global_invocation_id) id: vec3<u32>) {
     let slopes = box_slopes(view);
     var bent = bent_ray(refraction, view, ray, span);
     let first = 0u;
-    let end = steps.most;
+    let end = min(steps.most, MOST_RAY_STEPS);
     var sum = all_channels(0.0);
     var depth = all_channels(0.0);
     for (var step = first; step < end; step++) {

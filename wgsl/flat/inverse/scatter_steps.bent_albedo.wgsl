@@ -159,11 +159,14 @@ fn fixed_words(value: f32, exponent: i32, pixels: i32) -> vec2<u32> {
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
 
+/// Most steps of any bent ray.
+const MOST_RAY_STEPS: u32 = 65536u;
+
 /// A view of the volume: rays are affine in the pixel. 208 bytes.
 struct SliceView {
     /// Where the ray through the corner of the picture begins.
     origin: vec3<f32>,
-    /// How many slices, from 1 up.
+    /// How many slices, 1..MOST_SLICES.
     slices: u32,
     /// Direction of that ray, of any length.
     direction: vec3<f32>,
@@ -207,7 +210,7 @@ struct SliceView {
 struct RaySteps {
     /// Length of a step of a bent ray, metres, above 0.
     metres: f32,
-    /// Most steps of a bent ray.
+    /// Most steps of a bent ray, 0..MOST_RAY_STEPS.
     most: u32,
     reserved_a: u32,
     reserved_b: u32,
@@ -377,11 +380,11 @@ fn next_part(refraction: texture_3d<f32>, slopes: BoxSlopes, ray: ptr<function, 
 
 /// Adds to a number. Each time the lower word runs over, who sees it carries.
 fn add(number: u32, value: f32, exponent: i32, pixels: i32) {
-    let place = min(2u * number, arrayLength(&words) - 2u);
+    let place = min(2u * number, max(arrayLength(&words), 2u) - 2u);
     let added = fixed_words(value, exponent, pixels);
     let old = atomicAdd(&words[place], added.x);
     let carried = select(0u, 1u, old > 0xffffffffu - added.x);
-    atomicAdd(&words[place + 1u], added.y + carried);
+    atomicAdd(&words[min(place + 1u, arrayLength(&words) - 1u)], added.y + carried);
 }
 
 /// Adds channels to a voxel's sums.
@@ -416,7 +419,7 @@ fn scatter_steps(@builtin(global_invocation_id) id: vec3<u32>) {
     let slopes = box_slopes(view);
     var bent = bent_ray(refraction, view, ray, span);
     let first = 0u;
-    let end = steps.most;
+    let end = min(steps.most, MOST_RAY_STEPS);
     var depth = all_channels(0.0);
     for (var step = first; step < end; step++) {
         let part = next_part(refraction, slopes, &bent, steps.metres);

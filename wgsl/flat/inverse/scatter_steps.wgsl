@@ -154,11 +154,14 @@ fn fixed_words(value: f32, exponent: i32, pixels: i32) -> vec2<u32> {
 // summary: View rays in steps from slice to slice of a volume's box; a picture and its back-projection take the same.
 // source: thesis 7.4.1 and Listing 7.1; slices along the main axis after Joseph (1982).
 
+/// Most slices of a volume.
+const MOST_SLICES: u32 = 4096u;
+
 /// A view of the volume: rays are affine in the pixel. 208 bytes.
 struct SliceView {
     /// Where the ray through the corner of the picture begins.
     origin: vec3<f32>,
-    /// How many slices, from 1 up.
+    /// How many slices, 1..MOST_SLICES.
     slices: u32,
     /// Direction of that ray, of any length.
     direction: vec3<f32>,
@@ -244,7 +247,7 @@ struct SliceWalk {
 /// First slice of a ray's span and the one past the last, from the low side of the axis.
 fn slices_of(view: SliceView, ray: SliceRay, span: vec2<f32>) -> vec2<u32> {
     let ends = dot(ray.origin, view.axis) + dot(ray.direction, view.axis) * span;
-    let count = f32(view.slices);
+    let count = f32(min(view.slices, MOST_SLICES));
     // One more to each side: an end that rounding has put into the neighbour.
     let low = clamp(floor(min(ends.x, ends.y) * count - 0.01), 0.0, count);
     let high = clamp(ceil(max(ends.x, ends.y) * count + 0.01), low, count);
@@ -289,11 +292,11 @@ fn slice_part(view: SliceView, ray: SliceRay, span: vec2<f32>, slice: u32) -> Sl
 
 /// Adds to a number. Each time the lower word runs over, who sees it carries.
 fn add(number: u32, value: f32, exponent: i32, pixels: i32) {
-    let place = min(2u * number, arrayLength(&words) - 2u);
+    let place = min(2u * number, max(arrayLength(&words), 2u) - 2u);
     let added = fixed_words(value, exponent, pixels);
     let old = atomicAdd(&words[place], added.x);
     let carried = select(0u, 1u, old > 0xffffffffu - added.x);
-    atomicAdd(&words[place + 1u], added.y + carried);
+    atomicAdd(&words[min(place + 1u, arrayLength(&words) - 1u)], added.y + carried);
 }
 
 /// Adds channels to a voxel's sums.

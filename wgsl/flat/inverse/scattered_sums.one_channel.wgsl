@@ -56,7 +56,7 @@ fn fixed_number(words: vec2<u32>, exponent: i32, pixels: i32) -> f32 {
 struct SliceView {
     /// Where the ray through the corner of the picture begins.
     origin: vec3<f32>,
-    /// How many slices, from 1 up.
+    /// How many slices, 1..MOST_SLICES.
     slices: u32,
     /// Direction of that ray, of any length.
     direction: vec3<f32>,
@@ -114,10 +114,10 @@ struct VoxelGrid {
 
 /// Takes a number out of the words. `channel`: of it, 0 to 2.
 fn taken(number: u32, channel: u32) -> f32 {
-    let place = min(2u * number, arrayLength(&words) - 2u);
-    let both = vec2<u32>(words[place], words[place + 1u]);
+    let place = min(2u * number, max(arrayLength(&words), 2u) - 2u);
+    let both = vec2<u32>(words[place], words[min(place + 1u, arrayLength(&words) - 1u)]);
     words[place] = 0u;
-    words[place + 1u] = 0u;
+    words[min(place + 1u, arrayLength(&words) - 1u)] = 0u;
     let most = arrayLength(&greatest) - 1u;
     let exponent = fixed_exponent(greatest[min(channel, most)], greatest[min(4u + channel, most)]);
     return fixed_number(both, exponent, pixel_exponent(view.width * view.height));

@@ -75,7 +75,7 @@ const RESIDUALS: u32 = 3u;
 /// The sum of `count` sums from `first` on, in all threads.
 fn total(thread: u32, first: u32, count: u32) -> vec4<f32> {
     var sum = vec4<f32>(0.0);
-    for (var place = thread; place < count; place += GROUP_THREADS) {
+    for (var place = thread; place < min(count, arrayLength(&sums)); place += GROUP_THREADS) {
         sum += sums[min(first + place, arrayLength(&sums) - 1u)];
     }
     return group_sum(thread, sum);
@@ -94,15 +94,15 @@ fn choose_direction(@builtin(local_invocation_index) thread: u32) {
     let square = total(thread, 0u, counts.groups);
     let product = total(thread, counts.groups, counts.groups);
     if thread == 0u {
-        let before = scalars[2];
+        let before = scalars[min(2, arrayLength(&scalars) - 1u)];
         let first = counts.iteration == 0u;
-        scalars[0] = vec4<f32>(
+        scalars[min(0, arrayLength(&scalars) - 1u)] = vec4<f32>(
             kept_direction(square.x, product.x, before.x, first),
             kept_direction(square.y, product.y, before.y, first),
             kept_direction(square.z, product.z, before.z, first),
             0.0
         );
-        scalars[2] = square;
+        scalars[min(2, arrayLength(&scalars) - 1u)] = square;
     }
 }
 
@@ -111,7 +111,7 @@ fn choose_step(@builtin(local_invocation_index) thread: u32) {
     let descent = total(thread, 0u, counts.groups);
     let curvature = total(thread, counts.groups, counts.groups) + total(thread, counts.first_picture, counts.pictures);
     if thread == 0u {
-        scalars[1] = vec4<f32>(
+        scalars[min(1, arrayLength(&scalars) - 1u)] = vec4<f32>(
             step_length(descent.x, curvature.x),
             step_length(descent.y, curvature.y),
             step_length(descent.z, curvature.z),

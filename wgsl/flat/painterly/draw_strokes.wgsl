@@ -8,8 +8,27 @@
 // binding style: the style.
 // binding strokes: the strokes.
 // binding order: numbers of strokes, in the order that they are drawn in.
-// binding brushes: brushes, premultiplied linear RGB that the stroke's colour tints, and opacity.
+// binding brushes: brushes, premultiplied linear RGB that the stroke's colour tints, and opacity; what is not finite counts as 0.
 // binding brush_sampler: linear, with mipmaps.
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+}
 
 // ---- airlight::core::noise ----
 // summary: Gradient noise in two dimensions, in -1/sqrt 2 .. 1/sqrt 2, of an integer hash.
@@ -228,5 +247,6 @@ fn vertex_stroke(@builtin(vertex_index) vertex: u32) -> Corner {
 
 @fragment
 fn fragment_stroke(corner: Corner) -> @location(0) vec4<f32> {
-    return corner.tint * textureSample(brushes, brush_sampler, corner.coordinates, corner.brush);
+    let brush = textureSample(brushes, brush_sampler, corner.coordinates, corner.brush);
+    return corner.tint * vec4<f32>(finite_or_rgb(brush.rgb, 0.0), finite_or(brush.a, 0.0));
 }

@@ -17,7 +17,7 @@
 // binding surface: which surface is seen, and where the volume lay.
 // binding lighting: how it is lit; not with DEFERRED or DISTANCE_ONLY.
 // binding values: the volume, of any float format that filters.
-// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding brick_distances: of each brick to the nearest in which anything is solid, in bricks, r32uint; with SKIPPING only.
 

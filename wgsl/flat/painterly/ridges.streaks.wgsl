@@ -36,12 +36,13 @@ fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
 // source: Kindlmann, Whitaker, Tasdizen and Moller, "Curvature-based transfer functions for direct volume rendering" (2003); dissertation on painterly volume rendering, 6.1.3.
 
 /// What a table over both curvatures holds: columns for the greater one and rows for the lesser, the first for -range and the
-/// last for range, 1/m. `table`: linear RGB and how much of it, filtered.
+/// last for range, 1/m. `table`: linear RGB and how much of it, filtered; what is not finite counts as 0.
 fn curvature_color(table: texture_2d<f32>, linear_sampler: sampler, curvatures: vec2<f32>, range: f32) -> vec4<f32> {
     let size = vec2<f32>(textureDimensions(table));
     let held = vec2<f32>(finite_or(curvatures.x, 0.0), finite_or(curvatures.y, 0.0));
     let share = clamp(held / max(range, 1e-20), vec2<f32>(-1.0), vec2<f32>(1.0)) * 0.5 + 0.5;
-    return textureSampleLevel(table, linear_sampler, (share * (size - 1.0) + 0.5) / size, 0.0);
+    let texel = textureSampleLevel(table, linear_sampler, (share * (size - 1.0) + 0.5) / size, 0.0);
+    return vec4<f32>(finite_or_rgb(texel.rgb, 0.0), finite_or(texel.a, 0.0));
 }
 
 // ---- painterly/ridges ----

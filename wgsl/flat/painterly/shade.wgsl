@@ -2,6 +2,7 @@
 // Airlight 0.1.0: painterly/shade, permutation default
 // summary: Lights what `iso_raycast` has written with DEFERRED: Phong lighting by colour and normal.
 // source: dissertation on painterly volume rendering, 4.1.4, Eq. 4.2: illumination deferred to a later step.
+// note: What is not finite counts as 0.
 // binding camera: the camera that the rays were cast with.
 // binding lighting: how the surface is lit.
 // binding color: unlit colour, and 1 where the surface is seen.
@@ -57,6 +58,25 @@ fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     return Ray(origin, normalize(far.xyz - select(camera.eye * far.w, near.xyz, parallel)));
 }
 
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
+}
+
 // ---- airlight::painterly::iso_surface ----
 // summary: Iso-surface of classified opacity in a volume: crossing, gradient, Phong lighting, flow and occlusion of a surface point.
 // source: dissertation on painterly volume rendering, 4.1.1 to 4.1.6, Eq. 4.1 and 4.2.
@@ -100,8 +120,9 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= textureDimensions(picture)) {
         return;
     }
-    let unlit = textureLoad(color, id.xy, 0);
-    let stored = textureLoad(surface, id.xy, 0).xyz;
+    let texel = textureLoad(color, id.xy, 0);
+    let unlit = vec4<f32>(finite_or_rgb(texel.rgb, 0.0), finite_or(texel.a, 0.0));
+    let stored = finite_or_rgb(textureLoad(surface, id.xy, 0).xyz, 0.0);
     // Half floats that were cut short are too short for a high power.
     let normal = stored / max(length(stored), 1e-6);
     let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(id.xy) + 0.5));

@@ -6,7 +6,7 @@
 // note: iso-value changes. Ranges of bricks stay as they are. `core/brick_distances` then spreads what is written.
 // binding volume: the scale of texels.
 // binding surface: iso-value and offset of texels.
-// binding transfer: colour and opacity of values 0..1, one row.
+// binding transfer: finite colour and opacity of values 0..1, one row.
 // binding linear_sampler: linear, clamped to the edge.
 // binding ranges: least and greatest texel of each brick and one voxel around it, of `core/brick_ranges`.
 // binding counts: for each entry of the table, how many before it are solid; one more than entries.
@@ -143,11 +143,11 @@ fn count_entries(@builtin(local_invocation_index) thread: u32) {
         before += of_chunks[i];
     }
     for (var i = begin; i < end; i++) {
-        counts[i] = before;
+        counts[min(i, arrayLength(&counts) - 1u)] = before;
         before += is_solid_entry(i);
     }
     if thread == THREADS - 1u {
-        counts[entries] = before;
+        counts[min(entries, arrayLength(&counts) - 1u)] = before;
     }
 }
 
@@ -163,7 +163,8 @@ fn solid_bricks(@builtin(global_invocation_id) id: vec3<u32>) {
     let greatest = min(max(low, high) + ROUNDING, 1.0);
     let ends = max(classified(transfer, linear_sampler, least).w, classified(transfer, linear_sampler, greatest).w);
     let between = entries_between(least, greatest, textureDimensions(transfer).x);
-    let corners = counts[between.y] > counts[between.x];
+    let known = min(between, vec2<u32>(arrayLength(&counts) - 1u));
+    let corners = counts[known.y] > counts[known.x];
     let solid = ends >= solid_threshold(surface.iso_value) || corners;
     textureStore(distances, id, vec4<u32>(select(NOTHING_NEAR, 0u, solid)));
 }

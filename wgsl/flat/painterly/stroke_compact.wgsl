@@ -523,7 +523,7 @@ fn gather_strokes(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var there = select(0u, 1u, index < min(counts.instances, capacity())); there > 0u; there--) {
         let source = sources[index];
         let survives = source < frame.capacity;
-        var stroke = strokes[min(source, frame.capacity - 1u)];
+        var stroke = strokes[min(source, min(frame.capacity, arrayLength(&strokes)) - 1u)];
         for (var births = select(1u, 0u, survives); births > 0u; births--) {
             let pixel = source - frame.capacity;
             let columns = source_size().x;

@@ -12,6 +12,20 @@
 // binding brushes: brushes, premultiplied; opacity in alpha.
 // binding brush_sampler: linear, with mipmaps.
 
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
 // ---- airlight::painterly::stroke ----
 // summary: A brush stroke, its states, what a frame knows of all strokes, and the style of the three layers of strokes.
 // source: Ramalhao, "Painterly stylization of real-time volume rendering" (2010), 4.2.1, 4.2.2, Table 5.1.
@@ -209,7 +223,7 @@ fn vertex_density(@builtin(vertex_index) vertex: u32) -> Corner {
 
 @fragment
 fn fragment_density(corner: Corner) -> @location(0) vec4<f32> {
-    let opacity = textureSample(brushes, brush_sampler, corner.coordinates, corner.brush).a;
+    let opacity = finite_or(textureSample(brushes, brush_sampler, corner.coordinates, corner.brush).a, 0.0);
     let inside = all(corner.coordinates >= vec2<f32>(0.0)) && all(corner.coordinates <= vec2<f32>(1.0));
     return corner.density * select(0.0, opacity, inside);
 }

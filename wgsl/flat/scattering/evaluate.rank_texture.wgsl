@@ -214,6 +214,13 @@ fn one_minus_exp(x: f32) -> f32 {
     return select(1.0 - exp(-x), series, x < 0.3);
 }
 
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Most steps of a march by equal steps.
+const MOST_MARCH_STEPS: u32 = 65536u;
+
 // ---- airlight::scattering::rectify ----
 // summary: Epipolar coordinates around a directional light: rows are slices, columns radii, depth the angle to the light.
 // source: thesis 4.4.1, after Baran et al., "A hierarchical volumetric shadow algorithm" (2010); Eq. 4.12.
@@ -456,10 +463,11 @@ fn lit_at(light: Light, point: vec3<f32>) -> vec3<f32> {
 fn marched_light(
     light: Light, origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
 ) -> vec3<f32> {
-    let stride = (span.y - span.x) / f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let stride = (span.y - span.x) / f32(max(taken, 1u));
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         let along = stride * (f32(done) + offset);
         let weight = exp(-min(extinction * stride * f32(done), 80.0));
         sum += weight * lit_at(light, origin + (span.x + along) * direction);

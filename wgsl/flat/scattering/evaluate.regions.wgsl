@@ -238,6 +238,9 @@ fn prefix_weight(optical_step: f32, texels: f32) -> f32 {
 // summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
 // source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
 
+/// Most steps of a march by equal steps.
+const MOST_MARCH_STEPS: u32 = 65536u;
+
 /// Mean visibility of a view ray over `steps` equal steps through a standard shadow map, weighted by
 /// transmittance. `origin`, `direction`: of the ray in the world; `distance`: its length in metres;
 /// `extinction` in 1/m, zero for the plain mean; `offset`: 0..1, where in each step the sample lies.
@@ -250,13 +253,14 @@ fn march_shadow_map(
     // A directional light's matrix is affine: the ray is a straight line in texels and depth.
     let first = shadow_position(light, size, origin);
     let last = shadow_position(light, size, origin + direction * distance);
-    let stride = (last - first) / f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let stride = (last - first) / f32(max(taken, 1u));
     // Depth must grow away from the light for the comparison.
     let facing = select(-1.0, 1.0, light.far_depth > 0.5);
-    let ratio = exp(-extinction * distance / f32(max(steps, 1u)));
+    let ratio = exp(-extinction * distance / f32(max(taken, 1u)));
     var sum = 0.0;
     var total = 0.0;
-    for (var left = steps; left > 0u; left--) {
+    for (var left = taken; left > 0u; left--) {
         let at = first + stride * (f32(left) - 1.0 + offset);
         let inside = all(at.xy >= vec2<f32>(0.0)) && all(at.xy < size);
         let texel = vec2<u32>(clamp(at.xy, vec2<f32>(0.0), size - 1.0));

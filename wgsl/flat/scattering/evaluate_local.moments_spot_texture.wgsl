@@ -317,6 +317,13 @@ fn picture_corner(index: u32) -> vec4<f32> {
     return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
 }
 
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Most steps of a march by equal steps.
+const MOST_MARCH_STEPS: u32 = 65536u;
+
 // ---- airlight::scattering::rectify ----
 // summary: Epipolar coordinates around a directional light: rows are slices, columns radii, depth the angle to the light.
 // source: thesis 4.4.1, after Baran et al., "A hierarchical volumetric shadow algorithm" (2010); Eq. 4.12.
@@ -728,13 +735,14 @@ fn marched_local_light(
     extinction: f32, steps: u32, offset: f32
 ) -> vec3<f32> {
     let ray = local_ray(away, cosine, sine, light.radius);
+    let taken = min(steps, MOST_MARCH_STEPS);
     let from_angle = equal_angle(ray, span.x);
-    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(steps, 1u));
+    let stride = (equal_angle(ray, max(span.y, span.x)) - from_angle) / f32(max(taken, 1u));
     // Weights in units of the first step's: finite however deep the stretch lies.
     let first = path_through_air(ray, along_from_equal_angle(ray, from_angle + stride * offset));
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         let along = along_from_equal_angle(ray, from_angle + stride * (f32(done) + offset));
         let phase = henyey_greenstein(cosine_to_light(ray, along), g);
         let air = exp(-clamp(extinction * (path_through_air(ray, along) - first), 0.0, 80.0));

@@ -311,7 +311,7 @@ fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance
 // ---- scattering/march ----
 
 struct MarchParameters {
-    /// Steps a ray, at least 1.
+    /// Steps a ray, 1..65536.
     steps: u32,
     /// Where in each step the sample lies, 0..1; unused with jitter.
     offset: f32,

@@ -140,18 +140,22 @@ fn one_minus_exp(x: f32) -> f32 {
 // summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
 // source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
 
+/// Most steps of a march by equal steps.
+const MOST_MARCH_STEPS: u32 = 65536u;
+
 /// Plain mean visibility of a view ray over `steps` equal steps along a row of a rectified map: one
 /// texture load a step and nothing else, the fastest march there is. `depth`: of the ray, 0..1;
 /// `texels`: that the ray covers, fractional, clamped to the width of the map; `offset`: 0..1, where in
 /// each step the sample lies.
 fn march_row_steps(map: texture_2d<f32>, row: u32, depth: f32, texels: f32, steps: u32, offset: f32) -> f32 {
     let width = f32(textureDimensions(map).x);
-    let count = f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let count = f32(max(taken, 1u));
     let stride = clamp(texels, 1e-3, width) / count;
     // The sum of strides is rounded at each step: the last sample stays inside the map.
     var at = clamp(offset * stride, 0.0, max(width - 0.05 - stride * (count - 1.0), 0.0));
     var lit = 0u;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         lit += select(0u, 1u, textureLoad(map, vec2<u32>(u32(at), row), 0).x >= depth);
         at += stride;
     }
@@ -299,7 +303,7 @@ fn in_scattered(medium: Medium, light_radiance: vec3<f32>, cosine: f32, distance
 // ---- scattering/march ----
 
 struct MarchParameters {
-    /// Steps a ray, at least 1.
+    /// Steps a ray, 1..65536.
     steps: u32,
     /// Where in each step the sample lies, 0..1; unused with jitter.
     offset: f32,

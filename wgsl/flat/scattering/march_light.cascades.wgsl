@@ -254,6 +254,13 @@ fn view_position(views: ShadowViews, size: vec2<f32>, point: vec3<f32>) -> ViewP
     return ViewPosition(texels_from_clip(found.clip, size), found.view, found.inside);
 }
 
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Most steps of a march by equal steps.
+const MOST_MARCH_STEPS: u32 = 65536u;
+
 // ---- airlight::scattering::shadow_lookup ----
 // summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
 // source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
@@ -329,10 +336,11 @@ fn lit_at(light: Light, point: vec3<f32>) -> vec3<f32> {
 fn marched_light(
     light: Light, origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
 ) -> vec3<f32> {
-    let stride = (span.y - span.x) / f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let stride = (span.y - span.x) / f32(max(taken, 1u));
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         let along = stride * (f32(done) + offset);
         let weight = exp(-min(extinction * stride * f32(done), 80.0));
         sum += weight * lit_at(light, origin + (span.x + along) * direction);
@@ -344,7 +352,7 @@ fn marched_light(
 // ---- scattering/march_light ----
 
 struct MarchParameters {
-    /// Steps a ray, at least 1.
+    /// Steps a ray, 1..65536.
     steps: u32,
     /// Where in each step the sample lies, 0..1.
     offset: f32,

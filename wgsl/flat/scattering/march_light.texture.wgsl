@@ -209,6 +209,13 @@ fn one_minus_exp(x: f32) -> f32 {
     return select(1.0 - exp(-x), series, x < 0.3);
 }
 
+// ---- airlight::scattering::march ----
+// summary: Visibility along a view ray step by step: the naive form, as fallback and as baseline.
+// source: thesis 4.2.1 and 4.3.1, Eq. 4.4 and 4.8.
+
+/// Most steps of a march by equal steps.
+const MOST_MARCH_STEPS: u32 = 65536u;
+
 // ---- airlight::scattering::shadow_lookup ----
 // summary: Blocker and visibility of a single light ray, in one shadow map or in an array of views, of any light.
 // source: L. Williams, "Casting curved shadows on curved surfaces" (1978).
@@ -286,10 +293,11 @@ fn lit_at(light: Light, point: vec3<f32>) -> vec3<f32> {
 fn marched_light(
     light: Light, origin: vec3<f32>, direction: vec3<f32>, span: vec2<f32>, extinction: f32, steps: u32, offset: f32
 ) -> vec3<f32> {
-    let stride = (span.y - span.x) / f32(max(steps, 1u));
+    let taken = min(steps, MOST_MARCH_STEPS);
+    let stride = (span.y - span.x) / f32(max(taken, 1u));
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    for (var done = 0u; done < steps; done++) {
+    for (var done = 0u; done < taken; done++) {
         let along = stride * (f32(done) + offset);
         let weight = exp(-min(extinction * stride * f32(done), 80.0));
         sum += weight * lit_at(light, origin + (span.x + along) * direction);
@@ -301,7 +309,7 @@ fn marched_light(
 // ---- scattering/march_light ----
 
 struct MarchParameters {
-    /// Steps a ray, at least 1.
+    /// Steps a ray, 1..65536.
     steps: u32,
     /// Where in each step the sample lies, 0..1.
     offset: f32,

@@ -23,7 +23,7 @@
 // binding shadow: what arrives of the light at the sheet, linear RGB, rgba16float.
 // binding scattering: cones of scattered light; with SCATTERING only.
 // binding shadow_back: what arrives from behind the sheet, linear RGB, rgba16float; with BACK only.
-// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
 // binding picture: out of show_sheets, radiance of all sheets, and the transmittance to what lies behind them.

@@ -22,7 +22,7 @@
 // binding behind: mean values of the sheet farther from the light, rgba16float; with PHONG only.
 // binding light_sheet: mean values of the sheet along the light rays, rgba16float.
 // binding shadow: what arrives of the light at the sheet, linear RGB, rgba16float.
-// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
 // binding picture: out of show_sheets, radiance of all sheets, and the transmittance to what lies behind them.

@@ -24,7 +24,7 @@
 // binding light_heights: of the first surface along each light ray, likewise, as large as `shadow`; with POLYGONS only.
 // binding albedo: of the surfaces that the eye sees, linear RGB, rgba16float; with POLYGONS only.
 // binding normal: of the surfaces that the eye sees, unit, to the side that is seen, rgba16float; with POLYGONS only.
-// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding sum: radiance, linear RGB, and optical depth of the sheets so far, a vector a pixel, row after row.
 // binding picture: out of show_sheets, radiance of all sheets, and the transmittance to what lies behind them.
@@ -76,6 +76,25 @@ fn view_ray(camera: Camera, ndc: vec2<f32>) -> Ray {
     let origin = select(camera.eye, near.xyz / select(1.0, near.w, parallel), parallel);
     // With w = 0 (infinite far plane) far.xyz is the direction itself.
     return Ray(origin, normalize(far.xyz - select(camera.eye * far.w, near.xyz, parallel)));
+}
+
+// ---- airlight::core::finite ----
+// summary: Replaces NaN and infinities in data that comes from outside.
+// source: IEEE 754 binary32: all exponent bits set means NaN or infinity.
+
+/// True if `x` is neither NaN nor infinite.
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/// `x` where it is finite, `fallback` elsewhere.
+fn finite_or(x: f32, fallback: f32) -> f32 {
+    return select(fallback, x, is_finite(x));
+}
+
+/// Like `finite_or`, each component by itself.
+fn finite_or_rgb(x: vec3<f32>, fallback: f32) -> vec3<f32> {
+    return vec3<f32>(finite_or(x.x, fallback), finite_or(x.y, fallback), finite_or(x.z, fallback));
 }
 
 // ---- airlight::core::light ----
@@ -463,10 +482,10 @@ struct SeenSurface {
 fn seen_surface(pixel: vec2<u32>, height: f32) -> SeenSurface {
     let ray = view_ray(camera, ndc_from_pixel(camera, vec2<f32>(pixel) + 0.5));
     let point = ray.origin + ray.direction * max(place_at_height(ray, height), 0.0);
-    let facing = textureLoad(normal, pixel, 0).xyz;
+    let facing = finite_or_rgb(textureLoad(normal, pixel, 0).xyz, 0.0);
     let unit = facing * inverseSqrt(max(dot(facing, facing), 1e-12));
     let to_light = direction_to_light(light, point);
-    let color = clamp(textureLoad(albedo, pixel, 0).rgb, vec3<f32>(0.0), vec3<f32>(1.0));
+    let color = clamp(finite_or_rgb(textureLoad(albedo, pixel, 0).rgb, 0.0), vec3<f32>(0.0), vec3<f32>(1.0));
     let texel = metres_of_texel(light_camera.clip_from_world, f32(textureDimensions(light_heights).x), point);
     return SeenSurface(point, unit, to_light, -ray.direction, color, off_surface(texel, point, unit, to_light), texel);
 }

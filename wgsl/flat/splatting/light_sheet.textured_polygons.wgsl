@@ -11,7 +11,7 @@
 // binding sheets: the sheets.
 // binding lighting: extinction.
 // binding light_sheet: mean values of the sheet along the light rays, rgba16float.
-// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding number: which sheet; with POLYGONS only.
 // binding light_heights: of the first surface along each light ray, metres, NO_SURFACE where there is none, r32float; with POLYGONS only.

@@ -9,7 +9,7 @@
 // binding sheets: the sheets.
 // binding lighting: extinction.
 // binding light_sheet: mean values of the sheet along the light rays, rgba16float.
-// binding transfer: colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding left: what is left of the light, linear RGB, a vector a texel of the shadow buffer, row after row.
 // binding shadow: out, the same.

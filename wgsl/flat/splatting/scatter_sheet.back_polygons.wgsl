@@ -24,7 +24,7 @@
 // binding scattering: cones and free path.
 // binding number: which sheet.
 // binding light_sheet: mean values of the sheet along the light rays, rgba16float.
-// binding transfer: colour, which is the albedo, and opacity of values 0..1, one row, rgba16float or rgba8unorm.
+// binding transfer: finite colour, which is the albedo, and opacity of values 0..1, one row, rgba16float or rgba8unorm.
 // binding linear_sampler: linear, clamped to the edge.
 // binding left: the light on its way, linear RGB, a vector a texel of the light buffer, row after row.
 // binding rows: what is scattered, convolved along rows: on, and the share that goes through; with BACK, behind these, back.
@@ -440,11 +440,11 @@ fn make_kernels(@builtin(global_invocation_id) id: vec3<u32>) {
     let texels = texels_per_metre(light_camera, ray.origin + ray.direction * along);
     let metres = metres_in_sheet(sheets, ray.direction);
     let on = texels * texels * spread_variance(scattering, metres, mean_square_slope(lighting.g, scattering.forward_cone));
-    kernels[4u * id.x] = axis_kernel(on.x);
-    kernels[4u * id.x + 1u] = axis_kernel(on.y);
+    kernels[min(4u * id.x, arrayLength(&kernels) - 1u)] = axis_kernel(on.x);
+    kernels[min(4u * id.x + 1u, arrayLength(&kernels) - 1u)] = axis_kernel(on.y);
     let back = texels * texels * spread_variance(scattering, metres, mean_square_slope(-lighting.g, scattering.back_cone));
-    kernels[4u * id.x + 2u] = axis_kernel(back.x);
-    kernels[4u * id.x + 3u] = axis_kernel(back.y);
+    kernels[min(4u * id.x + 2u, arrayLength(&kernels) - 1u)] = axis_kernel(back.x);
+    kernels[min(4u * id.x + 3u, arrayLength(&kernels) - 1u)] = axis_kernel(back.y);
 }
 
 /// The light at a texel before the first sheet; linear RGB.
@@ -477,9 +477,9 @@ fn optics_of(texel: vec2<u32>, mean: f32, shares: vec2<f32>) -> SheetOptics {
 fn convolve_rows(corner: vec2<u32>, local: vec2<u32>, stage: u32) {
     let size = textureDimensions(shadow);
     let kernel = min(4u * number.index, arrayLength(&kernels) - 4u);
-    var radius = u32(kernels[kernel].weights[3].w);
-    radius = max(radius, u32(kernels[kernel + 2u].weights[3].w));
-    radius = min(radius, BLUR_WEIGHTS - 1u);
+    var asked = u32(kernels[min(kernel, arrayLength(&kernels) - 1u)].weights[3].w);
+    asked = max(asked, u32(kernels[min(kernel + 2u, arrayLength(&kernels) - 1u)].weights[3].w));
+    let radius = min(asked, BLUR_WEIGHTS - 1u);
     let width = TILE.x + 2u * radius;
     let shares = cone_shares(scattering, lighting.g);
     for (var i = local.y * TILE.x + local.x; i < width * TILE.y; i += TILE.x * TILE.y) {
@@ -522,15 +522,15 @@ fn convolve_rows(corner: vec2<u32>, local: vec2<u32>, stage: u32) {
         return;
     }
     let middle = local.y * REACH + local.x + radius;
-    var sum = kernels[kernel].weights[0].x * ahead[middle].rgb;
+    var sum = kernels[min(kernel, arrayLength(&kernels) - 1u)].weights[0].x * ahead[middle].rgb;
     for (var i = 1u; i <= radius; i++) {
-        sum += kernels[kernel].weights[i >> 2u][i & 3u] * (ahead[middle - i].rgb + ahead[middle + i].rgb);
+        sum += kernels[min(kernel, arrayLength(&kernels) - 1u)].weights[i >> 2u][i & 3u] * (ahead[middle - i].rgb + ahead[middle + i].rgb);
     }
     let place = place_of(texel);
-    rows[place] = vec4<f32>(sum, ahead[middle].a);
-    var back = kernels[kernel + 2u].weights[0].x * turned[middle];
+    rows[min(place, arrayLength(&rows) - 1u)] = vec4<f32>(sum, ahead[middle].a);
+    var back = kernels[min(kernel + 2u, arrayLength(&kernels) - 1u)].weights[0].x * turned[middle];
     for (var i = 1u; i <= radius; i++) {
-        back += kernels[kernel + 2u].weights[i >> 2u][i & 3u] * (turned[middle - i] + turned[middle + i]);
+        back += kernels[min(kernel + 2u, arrayLength(&kernels) - 1u)].weights[i >> 2u][i & 3u] * (turned[middle - i] + turned[middle + i]);
     }
     rows[min(arrayLength(&left) + place, arrayLength(&rows) - 1u)] = vec4<f32>(back, 0.0);
 }
@@ -540,24 +540,24 @@ fn convolved_columns(texel: vec2<u32>) -> vec3<f32> {
     let size = textureDimensions(shadow);
     let kernel = min(4u * number.index, arrayLength(&kernels) - 4u);
     let place = place_of(texel);
-    let middle = rows[place];
-    var sum = middle.w * left[place].rgb + kernels[kernel + 1u].weights[0].x * middle.rgb;
-    let radius = min(u32(kernels[kernel + 1u].weights[3].w), BLUR_WEIGHTS - 1u);
+    let middle = rows[min(place, arrayLength(&rows) - 1u)];
+    var sum = middle.w * left[place].rgb + kernels[min(kernel + 1u, arrayLength(&kernels) - 1u)].weights[0].x * middle.rgb;
+    let radius = min(u32(kernels[min(kernel + 1u, arrayLength(&kernels) - 1u)].weights[3].w), BLUR_WEIGHTS - 1u);
     for (var i = 1u; i <= radius; i++) {
-        let weight = kernels[kernel + 1u].weights[i >> 2u][i & 3u];
+        let weight = kernels[min(kernel + 1u, arrayLength(&kernels) - 1u)].weights[i >> 2u][i & 3u];
         if texel.y >= i {
-            sum += weight * rows[place - i * size.x].rgb;
+            sum += weight * rows[min(place - i * size.x, arrayLength(&rows) - 1u)].rgb;
         }
         if texel.y + i < size.y {
-            sum += weight * rows[place + i * size.x].rgb;
+            sum += weight * rows[min(place + i * size.x, arrayLength(&rows) - 1u)].rgb;
         }
     }
     let all = arrayLength(&left);
     let last = arrayLength(&rows) - 1u;
-    sum += kernels[kernel + 3u].weights[0].x * rows[min(all + place, last)].rgb;
-    let reach = min(u32(kernels[kernel + 3u].weights[3].w), BLUR_WEIGHTS - 1u);
+    sum += kernels[min(kernel + 3u, arrayLength(&kernels) - 1u)].weights[0].x * rows[min(all + place, last)].rgb;
+    let reach = min(u32(kernels[min(kernel + 3u, arrayLength(&kernels) - 1u)].weights[3].w), BLUR_WEIGHTS - 1u);
     for (var i = 1u; i <= reach; i++) {
-        let weight = kernels[kernel + 3u].weights[i >> 2u][i & 3u];
+        let weight = kernels[min(kernel + 3u, arrayLength(&kernels) - 1u)].weights[i >> 2u][i & 3u];
         if texel.y >= i {
             sum += weight * rows[min(all + place - i * size.x, last)].rgb;
         }

@@ -117,17 +117,17 @@ fn cell_index(cell: vec2<u32>) -> u32 {
 /// Couplings of a cell to its neighbours: left, right, above, below; 0 beyond the border.
 fn neighbour_couplings(cell: vec2<u32>) -> vec4<f32> {
     let index = cell_index(cell);
-    let own = couplings[index];
+    let own = couplings[min(index, arrayLength(&couplings) - 1u)];
     let last = level.size - 1u;
     var all = vec4<f32>(0.0);
     if cell.x > 0u {
-        all.x = couplings[index - 1u].x;
+        all.x = couplings[min(index - 1u, arrayLength(&couplings) - 1u)].x;
     }
     if cell.x < last {
         all.y = own.x;
     }
     if cell.y > 0u {
-        all.z = couplings[index - level.size].y;
+        all.z = couplings[min(index - level.size, arrayLength(&couplings) - 1u)].y;
     }
     if cell.y < last {
         all.w = own.y;
@@ -149,23 +149,23 @@ fn neighbour_indices(cell: vec2<u32>) -> vec4<u32> {
 /// Values of the neighbours times their couplings.
 fn neighbour_pull(cell: vec2<u32>, coupling: vec4<f32>) -> vec4<f32> {
     let at = neighbour_indices(cell);
-    return coupling.x * values[at.x] + coupling.y * values[at.y] + coupling.z * values[at.z] + coupling.w * values[at.w];
+    return coupling.x * values[min(at.x, arrayLength(&values) - 1u)] + coupling.y * values[min(at.y, arrayLength(&values) - 1u)] + coupling.z * values[min(at.z, arrayLength(&values) - 1u)] + coupling.w * values[min(at.w, arrayLength(&values) - 1u)];
 }
 
 /// What is left of a free cell's equation; 0 of a fixed one.
 fn cell_residual(cell: vec2<u32>) -> vec4<f32> {
     let index = cell_index(cell);
-    let own = couplings[index];
+    let own = couplings[min(index, arrayLength(&couplings) - 1u)];
     let coupling = neighbour_couplings(cell);
     let stiffness = dot(coupling, vec4<f32>(1.0)) + own.z;
-    let left = residual(values[index], neighbour_pull(cell, coupling), stiffness, sources[index]);
+    let left = residual(values[min(index, arrayLength(&values) - 1u)], neighbour_pull(cell, coupling), stiffness, sources[min(index, arrayLength(&sources) - 1u)]);
     return select(vec4<f32>(0.0), left, own.w > 0.5);
 }
 
 /// A cell's correction on the next level; beyond the border that at the border.
 fn coarse_value(cell: vec2<i32>) -> vec4<f32> {
     let inside = vec2<u32>(clamp(cell, vec2<i32>(0), vec2<i32>(i32(level.coarse_size) - 1)));
-    return values[level.coarse_first + inside.y * level.coarse_size + inside.x];
+    return values[min(level.coarse_first + inside.y * level.coarse_size + inside.x, arrayLength(&values) - 1u)];
 }
 
 @compute @workgroup_size(16, 8)
@@ -192,9 +192,9 @@ fn begin(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let free = select(1.0, 0.0, holds || nearest <= level.radius);
     let index = cell_index(id.xy);
-    couplings[index] = vec4<f32>(1.0, 1.0, 0.0, free);
-    values[index] = color;
-    sources[index] = vec4<f32>(0.0);
+    couplings[min(index, arrayLength(&couplings) - 1u)] = vec4<f32>(1.0, 1.0, 0.0, free);
+    values[min(index, arrayLength(&values) - 1u)] = color;
+    sources[min(index, arrayLength(&sources) - 1u)] = vec4<f32>(0.0);
 }
 
 @compute @workgroup_size(16, 8)
@@ -208,13 +208,13 @@ fn coarsen(@builtin(global_invocation_id) id: vec3<u32>) {
         if any(cell >= vec2<u32>(level.size)) {
             continue;
         }
-        let own = couplings[cell_index(cell)];
+        let own = couplings[min(cell_index(cell), arrayLength(&couplings) - 1u)];
         if own.w < 0.5 {
             continue;
         }
         let coupling = neighbour_couplings(cell);
         let at = neighbour_indices(cell);
-        let free = vec4<f32>(couplings[at.x].w, couplings[at.y].w, couplings[at.z].w, couplings[at.w].w);
+        let free = vec4<f32>(couplings[min(at.x, arrayLength(&couplings) - 1u)].w, couplings[min(at.y, arrayLength(&couplings) - 1u)].w, couplings[min(at.z, arrayLength(&couplings) - 1u)].w, couplings[min(at.w, arrayLength(&couplings) - 1u)].w);
         if (cell.x & 1u) == 1u {
             made.x += 0.5 * coupling.y * free.y;
         }
@@ -224,7 +224,7 @@ fn coarsen(@builtin(global_invocation_id) id: vec3<u32>) {
         made.z += own.z + dot(coupling, 1.0 - free);
         made.w = 1.0;
     }
-    couplings[level.coarse_first + id.y * level.coarse_size + id.x] = made;
+    couplings[min(level.coarse_first + id.y * level.coarse_size + id.x, arrayLength(&couplings) - 1u)] = made;
 }
 
 @compute @workgroup_size(16, 8)
@@ -235,11 +235,11 @@ fn smooth_cells(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let index = cell_index(cell);
-    let own = couplings[index];
+    let own = couplings[min(index, arrayLength(&couplings) - 1u)];
     if own.w > 0.5 {
         let coupling = neighbour_couplings(cell);
         let stiffness = dot(coupling, vec4<f32>(1.0)) + own.z;
-        values[index] = relaxed(values[index], neighbour_pull(cell, coupling), stiffness, sources[index], 1.0);
+        values[min(index, arrayLength(&values) - 1u)] = relaxed(values[min(index, arrayLength(&values) - 1u)], neighbour_pull(cell, coupling), stiffness, sources[min(index, arrayLength(&sources) - 1u)], 1.0);
     }
 }
 
@@ -256,8 +256,8 @@ fn restrict_residual(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
     let index = level.coarse_first + id.y * level.coarse_size + id.x;
-    sources[index] = sum;
-    values[index] = vec4<f32>(0.0);
+    sources[min(index, arrayLength(&sources) - 1u)] = sum;
+    values[min(index, arrayLength(&values) - 1u)] = vec4<f32>(0.0);
 }
 
 @compute @workgroup_size(16, 16)
@@ -265,12 +265,12 @@ fn solve_coarsest(@builtin(local_invocation_id) id: vec3<u32>, @builtin(local_in
     let size = min(level.size, 16u);
     let cell = min(id.xy, vec2<u32>(size - 1u));
     let index = cell_index(cell);
-    let own = couplings[index];
+    let own = couplings[min(index, arrayLength(&couplings) - 1u)];
     let coupling = neighbour_couplings(cell);
     let stiffness = dot(coupling, vec4<f32>(1.0)) + own.z;
-    let source = sources[index];
+    let source = sources[min(index, arrayLength(&sources) - 1u)];
     let works = all(id.xy < vec2<u32>(size)) && own.w > 0.5;
-    coarsest[local] = values[index];
+    coarsest[local] = values[min(index, arrayLength(&values) - 1u)];
     workgroupBarrier();
     // Where a coupling is 0 the neighbour may be any.
     let left = max(local, 1u) - 1u;
@@ -286,7 +286,7 @@ fn solve_coarsest(@builtin(local_invocation_id) id: vec3<u32>, @builtin(local_in
         workgroupBarrier();
     }
     if works {
-        values[index] = coarsest[local];
+        values[min(index, arrayLength(&values) - 1u)] = coarsest[local];
     }
 }
 
@@ -296,11 +296,11 @@ fn prolong(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let index = cell_index(id.xy);
-    if couplings[index].w > 0.5 {
+    if couplings[min(index, arrayLength(&couplings) - 1u)].w > 0.5 {
         let own = vec2<i32>(id.xy / 2u);
         // Towards the neighbour that lies nearer.
         let side = own + vec2<i32>(id.xy & vec2<u32>(1u)) * 2 - 1;
-        values[index] += prolonged(
+        values[min(index, arrayLength(&values) - 1u)] += prolonged(
             coarse_value(own), coarse_value(vec2<i32>(side.x, own.y)), coarse_value(vec2<i32>(own.x, side.y)),
             coarse_value(side)
         );
@@ -310,7 +310,7 @@ fn prolong(@builtin(global_invocation_id) id: vec3<u32>) {
 @compute @workgroup_size(16, 8)
 fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
     if all(id.xy < vec2<u32>(level.size)) {
-        let color = clamp(values[cell_index(id.xy)], vec4<f32>(0.0), vec4<f32>(1.0));
+        let color = clamp(values[min(cell_index(id.xy), arrayLength(&values) - 1u)], vec4<f32>(0.0), vec4<f32>(1.0));
         textureStore(diffused, id.xy, color);
     }
 }

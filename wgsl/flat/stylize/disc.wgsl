@@ -36,7 +36,7 @@ struct Disc {
     level: u32,
     /// The least distance of rows from the middle that this table serves, texels.
     first_row: u32,
-    /// The distance at which it ends, texels.
+    /// The distance at which it ends, texels, at most the height of the map.
     end_row: u32,
     /// 1 for minima, -1 for maxima.
     sign: f32,
@@ -106,7 +106,8 @@ fn disc_extremum(@builtin(global_invocation_id) id: vec3<u32>) {
     if disc.begins == 0u {
         extremum = textureLoad(accumulated, id.xy, 0).x;
     }
-    for (var row = disc.first_row; row < disc.end_row; row++) {
+    let end_row = min(disc.end_row, size.y);
+    for (var row = disc.first_row; row < end_row; row++) {
         let half = i32(min(disc_half_chord(disc.radius, row), size.x - 1u));
         let left = at.x - half + before;
         let right = at.x + half - after;

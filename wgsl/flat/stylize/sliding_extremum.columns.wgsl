@@ -44,6 +44,9 @@ struct Window {
     reserved_c: f32,
 }
 
+/// The most texels of a Window.
+const LONGEST: u32 = 64u;
+
 // ---- stylize/sliding_extremum ----
 
 @group(0) @binding(0) var<uniform> window: Window;
@@ -92,19 +95,22 @@ fn sliding_extremum(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let line = line_at(id.x);
     // The texels of one residue of the stride are a row of their own; this is a block of it.
-    let reach = window_reach();
+    let asked = min(window_reach(), vec2<u32>(LONGEST - 1u));
+    let reach = vec2<u32>(asked.x, min(asked.y, LONGEST - 1u - asked.x));
     let width = reach.x + reach.y + 1u;
-    let residue = id.y % window.stride;
-    let first = (id.y / window.stride) * width;
-    let begin = i32(residue + first * window.stride);
+    // From the length of the line on all strides are one.
+    let stride = clamp(window.stride, 1u, max(line.length, 1u));
+    let residue = id.y % stride;
+    let first = (id.y / stride) * width;
+    let begin = i32(residue + first * stride);
     if begin >= i32(line.length) {
         return;
     }
     let last = i32(line.length) - 1;
-    let step = i32(window.stride);
+    let step = i32(stride);
 
     // Extrema from each texel on to the end of the first window: of what lies in it before its last texel.
-    var suffix: array<f32, 64>;
+    var suffix: array<f32, LONGEST>;
     let back = begin - i32(reach.x) * step;
     var extremum = value_at(line, u32(clamp(back + i32(width - 1u) * step, 0, last)));
     suffix[width - 1u] = extremum;

@@ -177,5 +177,6 @@ fn count_particles(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         return;
     }
     let particle = particles[index];
-    atomicAdd(&counts[particle_defect(particle, ball_in_map(particle, light, splat.size), splat.size)], 1u);
+    let defect = particle_defect(particle, ball_in_map(particle, light, splat.size), splat.size);
+    atomicAdd(&counts[min(defect, arrayLength(&counts) - 1u)], 1u);
 }

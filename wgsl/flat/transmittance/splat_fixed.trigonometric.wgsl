@@ -271,15 +271,17 @@ struct Cover {
     size: vec2<u32>,
 }
 
-/// What the particle of a workgroup covers; nothing for a workgroup beyond the last particle.
-fn covered(group: vec3<u32>, groups: vec3<u32>) -> Cover {
+/// What the particle of a workgroup covers of a map that has `room` texels at most; nothing for a workgroup beyond the last particle.
+fn covered(group: vec3<u32>, groups: vec3<u32>, room: u32) -> Cover {
     let index = group.x + group.y * groups.x;
     let count = min(splat.count, arrayLength(&particles));
     let particle = particles[min(index, arrayLength(&particles) - 1u)];
     let ball = ball_in_map(particle, light, splat.size);
     let kept = index < count && particle_defect(particle, ball, splat.size) == PARTICLE_KEPT;
-    let last = splat.size - 1.0;
-    let begin = clamp(ceil(ball.middle - ball.reach - 0.5), vec2<f32>(0.0), splat.size);
+    let columns = clamp(splat.size.x, 1.0, f32(room));
+    let fitting = vec2<f32>(columns, clamp(splat.size.y, 0.0, f32(room / max(u32(columns), 1u))));
+    let last = fitting - 1.0;
+    let begin = clamp(ceil(ball.middle - ball.reach - 0.5), vec2<f32>(0.0), fitting);
     let end = clamp(floor(ball.middle + ball.reach - 0.5), vec2<f32>(-1.0), last);
     let size = select(vec2<f32>(0.0), max(end - begin + 1.0, vec2<f32>(0.0)), kept);
     return Cover(ball, vec2<u32>(begin), vec2<u32>(size));
@@ -290,7 +292,7 @@ fn accumulate(
     @builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) thread: u32
 ) {
-    let cover = covered(group, groups);
+    let cover = covered(group, groups, arrayLength(&sums) / (4u * LAYERS));
     for (var i = thread; i < cover.size.x * cover.size.y; i += THREADS) {
         let texel = cover.first + vec2<u32>(i % cover.size.x, i / cover.size.x);
         let stretch = stretch_of_ball(cover.ball, vec2<f32>(texel) + 0.5);
@@ -300,11 +302,11 @@ fn accumulate(
             for (var layer = 0u; layer < LAYERS; layer++) {
                 let added = vec4<i32>(round(FIXED_STEPS * stretch.optical_depth * own.layers[layer]));
                 for (var channel = 0u; channel < 4u; channel++) {
-                    let old = atomicAdd(&sums[first + 4u * layer + channel], added[channel]);
+                    let old = atomicAdd(&sums[min(first + 4u * layer + channel, arrayLength(&sums) - 1u)], added[channel]);
                     // The sum has another sign than both that were added.
                     let sum = old + added[channel];
                     if ((old ^ sum) & (added[channel] ^ sum)) < 0 {
-                        atomicAdd(&counts[OVERFLOWED], 1u);
+                        atomicAdd(&counts[min(OVERFLOWED, arrayLength(&counts) - 1u)], 1u);
                     }
                 }
             }
@@ -322,7 +324,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var layer = 0u; layer < LAYERS; layer++) {
         var sum = vec4<f32>(0.0);
         for (var channel = 0u; channel < 4u; channel++) {
-            sum[channel] = f32(atomicLoad(&sums[first + 4u * layer + channel])) / FIXED_STEPS;
+            sum[channel] = f32(atomicLoad(&sums[min(first + 4u * layer + channel, arrayLength(&sums) - 1u)])) / FIXED_STEPS;
         }
         textureStore(coefficients, id.xy, layer, sum);
     }
