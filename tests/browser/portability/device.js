@@ -50,7 +50,7 @@ export async function repeat(device, recorded, blob, text) {
 
 async function create(device, recorded, place, blob) {
     const about = recorded.resources[place];
-    if (about.before === null) throw new Error("a resource could not be recorded: it has several samples a pixel");
+    if (about.before === null) throw new Error("a resource could not be recorded: it has several samples a pixel, or is no source of copies");
     const bytes = await blob(about.before);
     if (about.kind === "buffer") {
         const usage = STORAGE | UNIFORM | VERTEX | INDEX | INDIRECT | COPY_SRC | COPY_DST;
