@@ -71,11 +71,14 @@ fn inner_blocks(statement: &Statement) -> Vec<&Block> {
     }
 }
 
+/// A call: who calls, and with what.
+type Call<'a> = (usize, &'a [Handle<Expression>]);
+
 /// All functions of a module, entry points behind the others, and who calls them with what.
 struct Scan<'a> {
     functions: Vec<&'a Function>,
     first_entry: usize,
-    calls: HashMap<usize, Vec<(usize, &'a [Handle<Expression>])>>,
+    calls: HashMap<usize, Vec<Call<'a>>>,
     stores: Vec<HashMap<Handle<LocalVariable>, Vec<Handle<Expression>>>>,
 }
 

@@ -194,10 +194,7 @@ fn create(
         usage: usage | TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
-    let dimension = view_dimension(dimension);
-    let view =
-        raw.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
-    Texture { raw, view, dimension }
+    Texture::whole(raw, view_dimension(dimension))
 }
 
 fn texture(
@@ -256,7 +253,7 @@ fn depth_texture(
     let texture = create(extent, format, dimension, TextureUsages::RENDER_ATTACHMENT, samples);
     let mut encoder = gpu().encoder();
     for layer in 0..extent[2] {
-        let view = texture.layer(layer);
+        let view = texture.of_layer(layer).view;
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &view,

@@ -63,7 +63,7 @@ impl Comparison {
     /// The changes as lines, breaking ones first; what is the same in several permutations is said once.
     pub fn render(&self) -> String {
         let mut groups: BTreeMap<(Effect, usize), (&Change, Vec<&str>)> = BTreeMap::new();
-        let mut first: BTreeMap<(&str, &Option<String>, &Option<String>, &str), usize> = BTreeMap::new();
+        let mut first = BTreeMap::new();
         for (index, change) in self.changes.iter().enumerate() {
             // Whole passes and permutations stand for themselves.
             let alone = if change.part.is_empty() { change.subject.as_str() } else { "" };
