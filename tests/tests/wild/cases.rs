@@ -7,7 +7,7 @@ use crate::resources::{Resources, Written};
 use crate::structs::Word;
 use crate::values::Content;
 use airlight::Shaders;
-use airlight::validate::{Composed, Library, flat, naga};
+use airlight::validate::{Composed, Library, naga};
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -15,9 +15,6 @@ use std::time::Duration;
 const DEFAULT_CASES: [Content; 4] = [Content::Finite, Content::NonFinite, Content::Rough, Content::Extreme];
 /// Of each of the others.
 const OTHER_CASES: [Content; 2] = [Content::NonFinite, Content::Rough];
-/// Passes whose buffers must fit together for finite results: in ones that are too short all voxels share a few numbers, which grow
-/// with every entry point.
-const GROWING: [&str; 1] = ["inverse/solver_volume"];
 /// The longest submission. An idle machine of two cores takes at most a tenth.
 const LONGEST: Duration = Duration::from_secs(30);
 
@@ -79,7 +76,7 @@ fn hold_permutation(
     tally: &mut Tally,
 ) {
     let label = format!("{}:{permutation}", composed.pass);
-    let forms = [composed, &parsed_flat(composed)].map(Pipelines::new);
+    let forms = [composed, &flat_file(composed, permutation)].map(Pipelines::new);
     let [own, flat] = match forms {
         [Ok(own), Ok(flat)] => [own, flat],
         [Err(error), _] | [_, Err(error)] => return tally.failures.push(format!("{label}: {error}")),
@@ -113,7 +110,7 @@ fn hold_permutation(
             }
         }
         let mut wrong = Vec::new();
-        if content.is_sane() && !GROWING.contains(&composed.pass.as_str()) {
+        if content.is_sane() {
             wrong.extend(first.written.iter().filter_map(not_finite));
         }
         for (second, _) in &ran[1..] {
@@ -128,10 +125,12 @@ fn hold_permutation(
     }
 }
 
-/// The flat text of a pass, parsed again.
-fn parsed_flat(composed: &Composed) -> Composed {
-    let text = flat::write(composed).unwrap();
-    let module = naga::front::wgsl::parse_str(&text).unwrap();
+/// The flat file of a permutation, parsed.
+fn flat_file(composed: &Composed, permutation: &str) -> Composed {
+    let file =
+        airlight_wgsl::FLAT.iter().find(|flat| flat.pass == composed.pass && flat.permutation == permutation);
+    let text = file.unwrap().source;
+    let module = naga::front::wgsl::parse_str(text).unwrap();
     let capabilities = airlight::validate::core_capabilities();
     let info =
         naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities).validate(&module);

@@ -26,7 +26,7 @@ struct Draw {
 
 /// The pipelines of one composed pass.
 pub struct Pipelines {
-    compute: Option<(Pass, Vec<String>)>,
+    compute: Option<(Pass, Vec<(String, [u32; 3])>)>,
     draws: Vec<Draw>,
 }
 
@@ -43,7 +43,8 @@ impl Pipelines {
     pub fn new(composed: &Composed) -> Result<Self, String> {
         let reflection = composed.reflect();
         let of = |stage| reflection.entry_points.iter().filter(move |entry| entry.stage == stage);
-        let names: Vec<String> = of(Stage::Compute).map(|entry| entry.name.clone()).collect();
+        let names: Vec<(String, [u32; 3])> =
+            of(Stage::Compute).map(|entry| (entry.name.clone(), entry.workgroup_size)).collect();
         let compute = if names.is_empty() {
             None
         } else {
@@ -64,8 +65,13 @@ impl Pipelines {
         let mut encoder = gpu().encoder();
         if let Some((pass, entries)) = &self.compute {
             let bound = pass.bind_known(gpu(), &named).map_err(|error| error.to_string())?;
-            for entry in entries {
-                let groups = [[1, 1, 1], [2, 1, 1], [3, 2, 1], [2, 2, 2]][random.below(4)];
+            for (entry, workgroup) in entries {
+                let mut groups = [[1, 1, 1], [2, 1, 1], [3, 2, 1], [2, 2, 2]][random.below(4)];
+                // Groups beside each other along an axis that an entry point does not know would do the same work twice, and
+                // one that works in place has then no certain result.
+                for axis in (1..3).filter(|axis| content.is_sane() && workgroup[*axis] == 1) {
+                    groups[axis] = 1;
+                }
                 pass.dispatch_groups(&mut encoder, &bound, entry, groups)
                     .map_err(|error| error.to_string())?;
             }

@@ -9,6 +9,10 @@ use airlight::validate::{Binding, BindingKind, Reflection, Sample, TextureDimens
 use airlight::{Buffer, Resource, Sampler, Texture};
 use wgpu::{TextureFormat, TextureUsages};
 
+/// Elements of arrays without a length where parameters are sane: enough for every texel and voxel of a case. In shorter ones what
+/// lies beyond the end shares the last element, and who comes first is left to chance.
+const LONG: usize = 4096;
+
 /// From a single texel to beyond a workgroup.
 const SIZES: [[u32; 2]; 6] = [[1, 1], [3, 2], [17, 9], [33, 1], [1, 19], [8, 8]];
 const VOLUMES: [[u32; 3]; 5] = [[1, 1, 1], [3, 2, 5], [9, 8, 7], [17, 3, 2], [4, 4, 4]];
@@ -49,7 +53,8 @@ impl Resources {
             let volume = if odd { VOLUMES[random.below(VOLUMES.len())] } else { volume };
             match &binding.kind {
                 BindingKind::Uniform { ty, .. } | BindingKind::Storage { ty, .. } => {
-                    let elements = LENGTHS[random.below(LENGTHS.len())];
+                    let short = LENGTHS[random.below(LENGTHS.len())];
+                    let elements = if content.is_sane() { LONG } else { short };
                     let (words, kinds) = contents(reflection, (ty, &binding.name), elements, content, random);
                     Held::Buffer(buffer(&words), kinds)
                 }
