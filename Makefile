@@ -29,15 +29,20 @@ gallery: driver build ## Every picture from real data, in gallery/
 	$(AIRLIGHT) gallery --out gallery
 
 .PHONY: test
-test: driver build components ## Formatting, lints, every shader permutation, all tests
+test: driver components ## Formatting, lints, every shader permutation, all tests
 	cargo fmt --all --check
 	cargo clippy $(CARGO_FLAGS) --all-targets -- -D warnings
-	@$(MAKE) --no-print-directory check
+	# The commands together with the tests, whose dependencies have features of their own: so nothing is built twice.
+	cargo build $(CARGO_FLAGS) --all-targets
+	@$(MAKE) --no-print-directory check-built
 	cargo test $(CARGO_FLAGS)
 
 # AIRLIGHT_REQUIRE lists the programs whose absence is a finding; in CI those that can be had.
 .PHONY: check
-check: build ## Every shader permutation through both compilers and all back ends
+check: build check-built ## Every shader permutation through both compilers and all back ends
+
+.PHONY: check-built
+check-built:
 	@require="$${AIRLIGHT_REQUIRE-}"; \
 	if [ -z "$$require" ] && [ "$${CI-}" = true ]; then \
 	    require=spirv-val; \
@@ -58,6 +63,7 @@ portability: driver rust ## Every pass of the snapshots again, from its flat fil
 	    AIRLIGHT_CAPTURE="$(CURDIR)/target/portability/$$test" cargo test --quiet $(CARGO_FLAGS) --test $$test || exit 1; \
 	done
 	node tests/browser/portability/run.js
+
 .PHONY: validation-layer
 validation-layer: driver rust ## Tests on the GPU under the Vulkan validation layer, which must say nothing
 	./scripts/validation_layer.sh

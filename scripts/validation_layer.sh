@@ -48,7 +48,7 @@ if [ "$check" = yes ]; then exit 0; fi
 targets=()
 for name in "${tests[@]}"; do targets+=(--test "$name"); done
 # Built before the layer is switched on.
-cargo test --release --locked -p airlight-tests "${targets[@]}" --no-run
+cargo test --release --locked --workspace "${targets[@]}" --no-run
 
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
@@ -69,7 +69,7 @@ for name in "${tests[@]}"; do
     : >"$log"
     # Of every pass the permutation that most use: the layer sees no more in the others, and makes all slower.
     VK_INSTANCE_LAYERS="$LAYER" VK_LAYER_SETTINGS_PATH="$work" AIRLIGHT_WILD="${AIRLIGHT_WILD-:default}" \
-        cargo test --release --locked --quiet -p airlight-tests --test "$name" || failed=1
+        cargo test --release --locked --quiet --workspace --test "$name" || failed=1
     if ! grep -q "Khronos Validation Layer Active" "$log"; then
         echo "validation layer: $name ran without the layer" >&2
         failed=1

@@ -37,7 +37,7 @@ fn main() {
     app.insert_resource(ClearColor(Color::linear_rgb(0.10, 0.12, 0.16)));
     app.insert_resource(GlobalAmbientLight {
         color: Color::srgb(0.55, 0.65, 0.9),
-        brightness: 60.0,
+        brightness: 500.0,
         ..default()
     });
     app.insert_resource(DirectionalLightShadowMap { size: 4096 });
