@@ -16,7 +16,10 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 const REVIEWED: &[(&str, &str)] = &[
     ("add", "compares and exchanges until no other thread was faster"),
     ("list_births", "takes a bit away in each turn"),
-    ("column_from_x", "splits, which the host holds to 1..4; with a bound lavapipe takes minutes to compile it"),
+    (
+        "column_from_x",
+        "splits, which the host holds to 1..4; with a bound lavapipe takes minutes to compile it",
+    ),
     ("soften", "the reach that `prepare` left in workgroup memory, at most 12"),
 ];
 

@@ -122,11 +122,6 @@ fn projective_divisor(rows: ProjectiveRows, x: f32) -> f32 {
     return select(1.0, max(x, 1e-6 * rows.bounds.w), rows.projection == PERSPECTIVE);
 }
 
-/// Number of splits, 1..4.
-fn split_count(rows: ProjectiveRows) -> u32 {
-    return clamp(rows.splits, 1u, 4u);
-}
-
 /// X at the left end of `split`, metres.
 fn split_begin(rows: ProjectiveRows, split: u32) -> f32 {
     return select(rows.bounds[max(split, 1u) - 1u], rows.near, split == 0u);
@@ -134,8 +129,8 @@ fn split_begin(rows: ProjectiveRows, split: u32) -> f32 {
 
 /// X in metres of a fractional `column`, 0..`width`: what `column_from_x` did, undone.
 fn x_from_column(rows: ProjectiveRows, width: f32, column: f32) -> f32 {
-    let share = column * f32(split_count(rows)) / width;
-    let split = min(u32(max(share, 0.0)), split_count(rows) - 1u);
+    let share = column * f32(rows.splits) / width;
+    let split = min(u32(max(share, 0.0)), rows.splits - 1u);
     let unit = clamp(share - f32(split), 0.0, 1.0);
     let begin = split_begin(rows, split);
     let end = rows.bounds[split];

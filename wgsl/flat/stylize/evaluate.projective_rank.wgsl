@@ -243,11 +243,6 @@ struct ProjectiveRay {
     reach: f32,
 }
 
-/// Number of splits, 1..4.
-fn split_count(rows: ProjectiveRows) -> u32 {
-    return clamp(rows.splits, 1u, 4u);
-}
-
 /// X at the left end of `split`, metres.
 fn split_begin(rows: ProjectiveRows, split: u32) -> f32 {
     return select(rows.bounds[max(split, 1u) - 1u], rows.near, split == 0u);
@@ -257,19 +252,19 @@ fn split_begin(rows: ProjectiveRows, split: u32) -> f32 {
 fn column_from_x(rows: ProjectiveRows, width: f32, x: f32) -> f32 {
     let inside = clamp(x, rows.near, rows.bounds.w);
     var split = 0u;
-    for (var next = 1u; next < split_count(rows); next++) {
+    for (var next = 1u; next < rows.splits; next++) {
         split = select(split, next, inside >= rows.bounds[next - 1u]);
     }
     let begin = split_begin(rows, split);
     let end = rows.bounds[split];
     let unit = (inside - begin) / (end - begin) * select(1.0, end / inside, rows.projection == PERSPECTIVE);
-    return (f32(split) + clamp(unit, 0.0, 1.0)) * (width / f32(split_count(rows)));
+    return (f32(split) + clamp(unit, 0.0, 1.0)) * (width / f32(rows.splits));
 }
 
 /// X in metres of a fractional `column`, 0..`width`: what `column_from_x` did, undone.
 fn x_from_column(rows: ProjectiveRows, width: f32, column: f32) -> f32 {
-    let share = column * f32(split_count(rows)) / width;
-    let split = min(u32(max(share, 0.0)), split_count(rows) - 1u);
+    let share = column * f32(rows.splits) / width;
+    let split = min(u32(max(share, 0.0)), rows.splits - 1u);
     let unit = clamp(share - f32(split), 0.0, 1.0);
     let begin = split_begin(rows, split);
     let end = rows.bounds[split];
