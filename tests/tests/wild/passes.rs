@@ -24,9 +24,12 @@ struct Draw {
     name: String,
 }
 
+/// An entry point's name and its workgroup's size.
+type Entry = (String, [u32; 3]);
+
 /// The pipelines of one composed pass.
 pub struct Pipelines {
-    compute: Option<(Pass, Vec<(String, [u32; 3])>)>,
+    compute: Option<(Pass, Vec<Entry>)>,
     draws: Vec<Draw>,
 }
 
@@ -43,7 +46,7 @@ impl Pipelines {
     pub fn new(composed: &Composed) -> Result<Self, String> {
         let reflection = composed.reflect();
         let of = |stage| reflection.entry_points.iter().filter(move |entry| entry.stage == stage);
-        let names: Vec<(String, [u32; 3])> =
+        let names: Vec<Entry> =
             of(Stage::Compute).map(|entry| (entry.name.clone(), entry.workgroup_size)).collect();
         let compute = if names.is_empty() {
             None
