@@ -6,6 +6,7 @@
 use airlight_validate::{
     Definitions, Library,
     docs::{self, Pictures, header},
+    files_below,
 };
 use std::{
     collections::BTreeSet,
@@ -23,22 +24,8 @@ fn read(path: &str) -> String {
 
 /// Every chapter: path from `docs/src`, and text.
 fn chapters() -> Vec<(String, String)> {
-    let book = root().join("docs/src");
-    let mut open = vec![book.clone()];
-    let mut found = Vec::new();
-    while let Some(folder) = open.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "md") {
-                let name = path.strip_prefix(&book).unwrap().to_str().unwrap().replace('\\', "/");
-                found.push((name, fs::read_to_string(&path).unwrap()));
-            }
-        }
-    }
-    found.sort();
-    found
+    let names = files_below(&root().join("docs/src"), "md").unwrap();
+    names.into_iter().map(|name| (name.clone(), read(&format!("docs/src/{name}")))).collect()
 }
 
 /// Fenced blocks of a chapter: the line before the fence, what stands behind it, and the text.

@@ -3,24 +3,17 @@
 #![allow(clippy::unwrap_used)]
 
 use super::Arguments;
+use airlight_validate::files_below;
 use clap::{CommandFactory, Parser};
 use std::{fs, path::Path};
 
 /// Every line of the book's blocks that calls the program, with its chapter.
 fn calls() -> Vec<(String, String)> {
-    let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src")];
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src");
     let mut found = Vec::new();
-    while let Some(folder) = open.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "md") {
-                let text = fs::read_to_string(&path).unwrap();
-                let chapter = path.file_name().unwrap().to_str().unwrap();
-                found.extend(called(&text).into_iter().map(|line| (chapter.to_owned(), line)));
-            }
-        }
+    for chapter in files_below(&book, "md").unwrap() {
+        let text = fs::read_to_string(book.join(&chapter)).unwrap();
+        found.extend(called(&text).into_iter().map(|line| (chapter.clone(), line)));
     }
     found
 }

@@ -21,6 +21,8 @@
 mod compose;
 mod definitions;
 mod error;
+#[cfg(feature = "command")]
+mod files;
 mod imports;
 mod library;
 mod locate;
@@ -52,6 +54,8 @@ pub mod vendor;
 pub use compose::{Composed, core_capabilities};
 pub use definitions::{Definition, Definitions};
 pub use error::{Error, Location};
+#[cfg(feature = "command")]
+pub use files::files_below;
 pub use library::{Library, ModuleSource, PassSource};
 pub use permutations::Permutation;
 pub use reflect::{

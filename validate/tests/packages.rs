@@ -2,6 +2,7 @@
 //! What the crate and the npm package of `wgsl/` hold.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use airlight_validate::files_below;
 use std::{
     collections::BTreeSet,
     fs,
@@ -15,19 +16,6 @@ fn root() -> PathBuf {
 
 fn text(file: &str) -> String {
     fs::read_to_string(root().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
-}
-
-/// Shaders below a folder, as paths relative to `wgsl/`.
-fn shaders(folder: &Path, files: &mut BTreeSet<String>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            shaders(&path, files);
-        } else if path.extension().is_some_and(|extension| extension == "wgsl") {
-            let file = path.strip_prefix(root().join("wgsl")).unwrap();
-            files.insert(file.to_str().unwrap().replace('\\', "/"));
-        }
-    }
 }
 
 #[test]
@@ -49,8 +37,7 @@ fn the_crate_holds_every_shader_and_nothing_of_npm() {
     let listed = String::from_utf8(output.stdout).unwrap().replace('\\', "/");
     let listed: BTreeSet<String> = listed.lines().map(str::to_owned).collect();
 
-    let mut expected = BTreeSet::new();
-    shaders(&root().join("wgsl"), &mut expected);
+    let mut expected = files_below(&root().join("wgsl"), "wgsl").unwrap();
     assert!(expected.len() > 150, "{} shaders are too few to be the library", expected.len());
     expected.extend(airlight_wgsl::SYSTEMS.iter().map(|system| format!("{}/permutations", system.name)));
     for file in ["manifest.json", "README.md", "LICENSE-MIT", "LICENSE-APACHE", "UNLICENSE", "src/lib.rs"] {

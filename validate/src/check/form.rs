@@ -7,7 +7,7 @@ use super::{
     unit::{Context, about},
 };
 use crate::{
-    Composed, EntryPoint, Reflection,
+    Composed, EntryPoint, Location, Reflection,
     check::{Finding, Severity, Tool, tools},
     compose::validate,
     flat, locate,
@@ -65,6 +65,31 @@ pub(super) fn check(
             let word = Word { declaration: &hit.function, word: hit.word, ordinal: hit.ordinal, total: None };
             let location = origin::of_word(&context.library, composed, word);
             findings.push(Finding::new(Severity::Error, location, "uniformity", hit.message()));
+        }
+    }
+}
+
+/// The flat file that ships has the expressions of the sources, where naga's writer sets brackets that the other compiler
+/// may ask for.
+pub(super) fn check_shipped(
+    context: &Context,
+    composed: &Composed,
+    permutation: &str,
+    number: usize,
+    findings: &mut Vec<Finding>,
+) {
+    let Some(program) = context.tool(Tool::Tint).filter(|_| !context.is_foreign()) else { return };
+    let text = match flat::text(&context.library, &composed.pass, permutation) {
+        Ok(text) => text,
+        Err(error) => return findings.push(Finding::of("flat", &error)),
+    };
+    for diagnostic in tools::tint(program, &text, &context.file(number, "wgsl")) {
+        let message = quoted(&diagnostic.message, &text, diagnostic.line);
+        let location = Location::file(&composed.file);
+        let finding = Finding::new(diagnostic.severity, location, diagnostic.check(), message);
+        // What both forms have is said once, with its place.
+        if !findings.iter().any(|said| said.check == finding.check && said.severity == finding.severity) {
+            findings.push(finding);
         }
     }
 }

@@ -87,6 +87,33 @@ fn what_glsl_cannot_have_is_an_unexpected_failure() {
     assert_eq!(found(MODULE, &pass), [pair("glsl", "core/passes/pass.wgsl:9")]);
 }
 
+#[cfg(unix)]
+#[test]
+fn the_other_compiler_reads_the_expressions_of_the_sources() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("tint");
+    // Refuses what naga's writer leaves out.
+    let script = "#!/bin/sh\nfor file; do :; done\nwhile IFS= read -r line; do case \"$line\" in *refused*)\necho \
+        '[{\"severity\":\"error\",\"message\":\"no\",\"range\":{\"start\":{\"line\":1,\"column\":1}}}]'\nexit 1;;\n\
+        esac; done <\"$file\"\n";
+    std::fs::write(&program, script).unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let found = |pass: &str| {
+        let library = Library::from_text(
+            &[("core/leaf.wgsl", MODULE)],
+            &[("core/passes/pass.wgsl", pass)],
+            &[("core", "pass\n+ default:\n")],
+        );
+        let options = Options { path: Some(folder.path().into()), ..Options::default() };
+        let findings = run(&library, &options).unwrap().findings;
+        findings.into_iter().map(|finding| (finding.check, finding.file)).collect::<Vec<_>>()
+    };
+    assert_eq!(found(PASS), []);
+    let pass = PASS.replace("    cells[id.x] = 1u;", "    // This is refused.\n    cells[id.x] = 1u;");
+    assert_eq!(found(&pass), [pair("tint", "core/passes/pass.wgsl")]);
+}
+
 #[test]
 fn a_required_program_that_is_absent_is_a_finding() {
     let library = Library::from_text(&[("core/leaf.wgsl", MODULE)], &[], &[]);

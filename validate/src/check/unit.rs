@@ -153,6 +153,7 @@ fn check_pass(context: &Context, composed: &Composed, permutation: &str, number:
         }
     }
     form::check(context, composed, &reflection, number, &mut findings);
+    form::check_shipped(context, composed, permutation, number, &mut findings);
     check_backends(context, composed, &reflection, permutation, number, &mut findings);
     findings
 }

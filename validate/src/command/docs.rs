@@ -2,7 +2,10 @@
 //! `airlight-validate docs`.
 
 use super::{Stop, in_folder, library, write_whole};
-use airlight_validate::docs::{self, Pictures};
+use airlight_validate::{
+    docs::{self, Pictures},
+    files_below,
+};
 use std::{
     collections::BTreeMap,
     fs,
@@ -44,7 +47,7 @@ pub(crate) fn run(dir: &Path, out: &Path, check: bool) -> Result<ExitCode, Stop>
         let text = docs::summary(&library, &text).map_err(|error| failure(&contents, &error))?;
         pages.insert("SUMMARY.md".to_owned(), text);
     }
-    let needless = needless(out, &pages);
+    let needless = needless(out, &pages)?;
     if check {
         let stale = pages
             .iter()
@@ -81,19 +84,10 @@ fn failure(file: &Path, message: &str) -> Stop {
 }
 
 /// Pages of modules and passes that are no longer there.
-fn needless(out: &Path, pages: &BTreeMap<String, String>) -> Vec<PathBuf> {
-    let mut open = vec![out.join("modules")];
-    let mut found = Vec::new();
-    while let Some(folder) = open.pop() {
-        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                open.push(path);
-            } else if !pages.keys().any(|page| out.join(page) == path) {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
+fn needless(out: &Path, pages: &BTreeMap<String, String>) -> Result<Vec<PathBuf>, Stop> {
+    let folder = out.join("modules");
+    let there = files_below(&folder, "md")
+        .map_err(|error| Stop::Failure(format!("cannot read {}: {error}", folder.display())))?;
+    let needless = there.iter().filter(|page| !pages.contains_key(&format!("modules/{page}")));
+    Ok(needless.map(|page| folder.join(page)).collect())
 }

@@ -3,13 +3,8 @@
 //! `<system>/<pass>.<permutation>.wgsl` for the others.
 
 use super::text;
-use crate::{Error, Library, threads};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fmt::Write as _,
-    fs, io,
-    path::{Path, PathBuf},
-};
+use crate::{Error, Library, files_below, threads};
+use std::{collections::BTreeMap, fmt::Write as _, fs, io, path::Path};
 
 /// Every permutation of every pass: the file, relative to the folder, and its text.
 ///
@@ -72,7 +67,8 @@ pub fn sync(
     write: impl Fn(&Path, &str) -> io::Result<()>,
 ) -> Result<(), String> {
     sync_files(folder, files, kept, write)?;
-    let there = shaders(folder).map_err(|error| format!("cannot read {}: {error}", folder.display()))?;
+    let there =
+        files_below(folder, "wgsl").map_err(|error| format!("cannot read {}: {error}", folder.display()))?;
     for file in there.iter().filter(|file| !files.contains_key(*file)) {
         let path = folder.join(file);
         if kept == Kept::Compared {
@@ -109,28 +105,4 @@ pub fn sync_files(
             .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
     }
     Ok(())
-}
-
-/// The `.wgsl` files under a folder, relative to it, with `/`; none where there is no folder.
-pub(crate) fn shaders(folder: &Path) -> io::Result<BTreeSet<String>> {
-    let mut found = BTreeSet::new();
-    let mut open = vec![PathBuf::new()];
-    while let Some(part) = open.pop() {
-        let entries = match fs::read_dir(folder.join(&part)) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
-            entries => entries?,
-        };
-        for entry in entries {
-            let entry = entry?;
-            let path = part.join(entry.file_name());
-            if entry.file_type()?.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "wgsl") {
-                found.insert(
-                    path.components().map(|c| c.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/"),
-                );
-            }
-        }
-    }
-    Ok(found)
 }

@@ -19,8 +19,8 @@ use crate::{
     compose::{shader_definitions, validate},
     locate,
 };
+pub(crate) use files::name as file_name;
 pub use files::{Kept, list, render, sync, sync_files};
-pub(crate) use files::{name as file_name, shaders};
 use link::{Failure, Linked, link};
 use std::fmt::Write as _;
 pub use written::write;

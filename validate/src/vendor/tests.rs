@@ -73,7 +73,7 @@ fn sources_are_a_library_of_their_own() {
 #[test]
 fn flat_files_are_those_of_flatten() {
     let folder = folder(&["core/p:twice", "core/other"], Form::Flat);
-    let names: Vec<_> = flat::shaders(folder.path()).unwrap().into_iter().collect();
+    let names: Vec<_> = crate::files_below(folder.path(), "wgsl").unwrap().into_iter().collect();
     assert_eq!(names, ["core/other.wgsl", "core/p.twice.wgsl"]);
     let text = fs::read_to_string(folder.path().join("core/p.twice.wgsl")).unwrap();
     assert_eq!(text, flat::text(&library(), "core/p", "twice").unwrap());

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     Library, Location,
     check::{Finding, Severity},
-    flat,
+    files_below,
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, path::Path};
@@ -96,7 +96,7 @@ pub fn verify(folder: &Path, library: &Library) -> Result<(Lock, Vec<Status>), P
         };
         states.insert(file.clone(), (state, today.get(file) != Some(locked)));
     }
-    let there = flat::shaders(folder).map_err(|source| {
+    let there = files_below(folder, "wgsl").map_err(|source| {
         let path = folder.to_owned();
         Problem::File { what: "read", path, source }
     })?;
