@@ -5,8 +5,8 @@
 // note: A neighbour counts by how far it lies from the tangent plane and how alike its normal is, smoothly down to 0.
 // equation: weight = max(0, 1 − away / reach) max(0, 1 − ½ |n − n'|² / (1 − least_cosine)),  away: distance of either point from the other's plane
 // equation: mean = difference + ½ n, no longer than 1
-// error: weights within 5e-6; test ambient_functions::neighbours_count_by_distance_from_the_plane_and_by_normal.
-// error: a whole blur within 1.5e-3; test ambient_passes::a_blur_takes_the_mean_of_what_counts_in_its_row_or_column.
+// error: weights within 5e-6; test ambient/functions::neighbours_count_by_distance_from_the_plane_and_by_normal.
+// error: a whole blur within 1.5e-3; test ambient/passes::a_blur_takes_the_mean_of_what_counts_in_its_row_or_column.
 // parameter place, other: metres in the world.
 // parameter normal, other_normal: unit vectors in the world.
 // parameter difference: mean direction less half the normal, length up to 1.5.

@@ -11,8 +11,8 @@
 // equation: N = Σ V d / Σ V;  openness A = Σ V / n
 // equation: printed (Eq. 3.6): α = (1 − max(0, 2 |N| − 1)) π / 2;  exact: |N| = (1 + cos α) / 2, α = 2 atan2(√(1 − |N|), √|N|)
 // equation: irradiance under constant light, of an open surface's: 2 A <N, n>
-// error: angles by Eq. 3.6 within 1e-6, exact ones 8e-6 radians; test ambient_functions::cones_have_the_angles_of_their_mean_lengths.
-// error: sums within 2e-6; test ambient_functions::outliers_are_visible_to_directions_and_unknown_to_openness.
+// error: angles by Eq. 3.6 within 1e-6, exact ones 8e-6 radians; test ambient/functions::cones_have_the_angles_of_their_mean_lengths.
+// error: sums within 2e-6; test ambient/functions::outliers_are_visible_to_directions_and_unknown_to_openness.
 // parameter direction: unit vector in the world.
 // parameter outlier: whether nothing is known of the direction.
 // parameter mean_length: of the mean direction, 0..1.

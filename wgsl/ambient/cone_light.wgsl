@@ -13,9 +13,9 @@
 // equation: L_c(n, α) = 1 / (π sin² α) ∫ over the cap of half angle α about n of L(ω) <n, ω> dω;  L_p(n) = L_c(n, π/2)
 // equation: lit = L_c(N, α) A <N̂, n>  (Eq. 3.10 with normalised N̂)
 // error: light linear in the direction within 1.5e-3 by all texels, 0.01 by samples;
-// error: test ambient_light::light_linear_in_the_direction_has_its_closed_form.
-// error: look-ups within 5e-3 relative; test ambient_light::look_ups_find_directions_and_angles.
-// error: the geometric term within 2e-6; test ambient_light::the_geometric_term_is_a_cosine_of_both_normalised.
+// error: test ambient/light::light_linear_in_the_direction_has_its_closed_form.
+// error: look-ups within 5e-3 relative; test ambient/light::look_ups_find_directions_and_angles.
+// error: the geometric term within 2e-6; test ambient/light::the_geometric_term_is_a_cosine_of_both_normalised.
 // parameter layer: 0..7.
 // parameter cones: octahedral maps, rgba16float, 8 layers, linear RGB.
 // parameter cone_sampler: linear, clamped to the edge.

@@ -6,7 +6,7 @@
 // note: in the middle, +x a quarter of the width to the right of that, and the left and right edges meet at +z.
 // equation: direction = (sin θ sin φ, cos θ, −sin θ cos φ),  φ = 2π (u − ½), θ = π v
 // equation: solid angle of a column of width w between v₀ and v₁: 2π w (cos π v₀ − cos π v₁)
-// error: sums over texels within 5e-3 of the integral; test ambient_light::the_sum_over_texels_is_the_references_integral.
+// error: sums over texels within 5e-3 of the integral; test ambient/light::the_sum_over_texels_is_the_references_integral.
 // parameter coordinates: 0..1 from the upper left corner.
 // parameter direction: unit vector in the world, y up.
 

@@ -6,9 +6,9 @@
 // note: at the distance d, so it rises to 1 smoothly.
 // equation: f(d) = (1 − (d / r)²)² up to r, else 0;  visibility = 1 − f
 // equation: slice above the elevation h: open = 1 − sin h;  mean = tangent ½ (π/2 − h − sin h cos h) + normal ½ cos² h
-// error: weights and elevations within 1e-6; test ambient_places::occluders_count_less_with_distance_and_by_their_elevation.
-// error: slices within 2e-6; test ambient_functions::slices_above_a_horizon_are_their_integrals.
-// error: sectors exact; test ambient_functions::sectors_are_those_whose_middles_are_between.
+// error: weights and elevations within 1e-6; test ambient/places::occluders_count_less_with_distance_and_by_their_elevation.
+// error: slices within 2e-6; test ambient/functions::slices_above_a_horizon_are_their_integrals.
+// error: sectors exact; test ambient/functions::sectors_are_those_whose_middles_are_between.
 // parameter metres: distance of the occluder, from 0 up.
 // parameter radius: metres, above 0.
 // parameter towards: from the surface point to the other, metres in the world.

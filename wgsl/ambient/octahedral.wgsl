@@ -9,8 +9,8 @@
 // note: A direction that is not finite, or shorter than 1e-30, counts as +y.
 // equation: p = d / (|x| + |y| + |z|);  (u, v) = (p.x, p.z) above the horizon, (1 − |p.z|, 1 − |p.x|) with the signs of p below
 // equation: coordinate = (½ (u + 1) (side − 1) + ½) / side
-// error: directions and angles are found within 5e-3 of light; test ambient_light::look_ups_find_directions_and_angles.
-// error: no seam: edges differ by less than 2e-3; test ambient_light::nothing_shows_where_the_maps_edges_meet.
+// error: directions and angles are found within 5e-3 of light; test ambient/light::look_ups_find_directions_and_angles.
+// error: no seam: edges differ by less than 2e-3; test ambient/light::nothing_shows_where_the_maps_edges_meet.
 // parameter x: any number.
 // parameter direction: any length; not finite or shorter than 1e-30 counts as +y.
 // parameter place: in the square, -1..1.

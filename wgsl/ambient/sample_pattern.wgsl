@@ -6,8 +6,8 @@
 // note: have the hemisphere evenly, so a mean over it has little noise. Frames shift all sets on; frame 0 is the static pattern.
 // equation: point i of n: ((i + a) / n, fract(radical inverse of i in base 2 + b)), (a, b) a point of the R2 sequence per pixel
 // equation: direction = (√(1 − u²) cos 2πv, √(1 − u²) sin 2πv, u)
-// error: a direction in every stratum, places within 1e-6; test ambient_places::a_pixel_has_a_direction_in_every_stratum.
-// error: unit length within 1e-5; test ambient_functions::patterns_fill_the_hemisphere_and_frames_move_them.
+// error: a direction in every stratum, places within 1e-6; test ambient/places::a_pixel_has_a_direction_in_every_stratum.
+// error: unit length within 1e-5; test ambient/functions::patterns_fill_the_hemisphere_and_frames_move_them.
 // parameter bits: any 32 of them.
 // parameter pixel: column and row, from 0.
 // parameter frame: number of the frame; 0 is the static pattern.

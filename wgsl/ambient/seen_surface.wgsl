@@ -4,8 +4,8 @@
 // source: homogeneous unprojection.
 // note: Any camera and depth convention; its viewport is the size of the depth buffer. A depth of the far plane, or none that is finite, is no surface.
 // equation: place = P.xyz / P.w,  P = world_from_clip · (ndc(pixel + ½), depth, 1)
-// error: places within 2e-4 m, pixels 1e-3; test ambient_places::places_are_where_rays_through_the_middles_of_pixels_meet_them.
-// error: normals within 1e-5; test ambient_places::normals_are_made_unit_and_replaced_where_there_are_none.
+// error: places within 2e-4 m, pixels 1e-3; test ambient/places::places_are_where_rays_through_the_middles_of_pixels_meet_them.
+// error: normals within 1e-5; test ambient/places::normals_are_made_unit_and_replaced_where_there_are_none.
 // parameter pixel: column and row, from 0.
 // parameter depth: of the depth buffer, 0..1; what is not finite is no surface.
 // parameter place: metres in the world.

@@ -8,8 +8,8 @@
 // equation: distance(b) = min over occupied bricks o of max(|bx − ox|, |by − oy|, |bz − oz|)
 // equation: samples = 1 + floor(min over axes of (wall − unit) / step − MARGIN), wall: where the bricks that are alike end
 // error: exact: no sample among other bricks is passed over;
-// error: test core_bricks::runs_of_samples_stay_among_bricks_that_are_alike_and_end_no_sooner_than_they_must.
-// error: ranges hold all that a trilinear read touches; test core_bricks::ranges_hold_all_that_a_trilinear_read_in_a_brick_touches.
+// error: test core/bricks::runs_of_samples_stay_among_bricks_that_are_alike_and_end_no_sooner_than_they_must.
+// error: ranges hold all that a trilinear read touches; test core/bricks::ranges_hold_all_that_a_trilinear_read_in_a_brick_touches.
 // parameter unit: place in unit space, the volume being 0..1.
 // parameter size: voxels of the volume along each axis, from 1 up.
 

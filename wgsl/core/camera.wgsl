@@ -9,8 +9,8 @@
 // equation: distance(z) = dot(P(z).xyz − origin P(z).w, direction) / P(z).w
 // equation: side planes: row 4 ± row 1 (left, right) and row 4 ± row 2 (bottom, top) of clip_from_world
 // error: rays, distances and planes within the budgets of f32 that the test derives for each camera;
-// error: test core_camera::rays_distances_and_planes_of_perspective_cameras.
-// error: orthographic rays within 1e-6 of the size of the scene; test core_camera::orthographic_cameras_look_along_parallel_rays.
+// error: test core/camera::rays_distances_and_planes_of_perspective_cameras.
+// error: orthographic rays within 1e-6 of the size of the scene; test core/camera::orthographic_cameras_look_along_parallel_rays.
 // parameter pixel: pixels, (0, 0) the top left corner, (0.5, 0.5) the middle of the first.
 // parameter ndc: normalised device coordinates, -1..1 in the picture, y up.
 // parameter depth: value of the depth buffer, 0..1, in the camera's convention.

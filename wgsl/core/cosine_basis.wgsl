@@ -11,9 +11,9 @@
 // equation: mean of b_j over [m − h, m + h] = b_j(m) sin(j π h) / (j π h)
 // equation: Fejér: w_j = 1 − j / count
 // error: bases within 1e-6 + 3e-7 j, integrals 1e-6, means 2e-6 + 6e-7 j;
-// error: test core_cosine::bases_integrals_and_means_are_those_of_the_cosines.
-// error: harmonics_sum within 2e-6 + 1.5e-6 j; test core_cosine::harmonics_of_a_sum_of_depths_go_on_by_rotation.
-// error: sine_over_angle within 5e-7; test core_cosine::the_window_and_the_quotient_of_sine_and_angle.
+// error: test core/cosine::bases_integrals_and_means_are_those_of_the_cosines.
+// error: harmonics_sum within 2e-6 + 1.5e-6 j; test core/cosine::harmonics_of_a_sum_of_depths_go_on_by_rotation.
+// error: sine_over_angle within 5e-7; test core/cosine::the_window_and_the_quotient_of_sine_and_angle.
 // parameter group: number of four orders, from 0 up.
 // parameter depth: 0..1 over the range.
 // parameter half: half the length of a stretch, 0..0.5 over the range.

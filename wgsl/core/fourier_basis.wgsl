@@ -14,9 +14,9 @@
 // equation: bases of texel z: sin(c_k z), cos(c_k z);  coefficients of a ray: (2 / c_k) cos(c_k z_ray), −(2 / c_k) sin(c_k z_ray)
 // equation: Lanczos window: coefficients times sinc((2k − 1) / M), sinc(x) = sin(π x) / (π x)
 // equation: guarded(u) = GUARD + (1 − 2 GUARD) u
-// error: bases within 1e-6 + 8e-7 c_k, by the step from group to group or at once; test core_fourier::bases_are_sines_and_cosines.
-// error: coefficients within 1e-6, the whole series 1e-5; test core_fourier::coefficients_and_series_are_those_of_the_reference.
-// error: guarded within 1.5e-7; test core_fourier::the_guard_keeps_rays_from_both_ends.
+// error: bases within 1e-6 + 8e-7 c_k, by the step from group to group or at once; test core/fourier::bases_are_sines_and_cosines.
+// error: coefficients within 1e-6, the whole series 1e-5; test core/fourier::coefficients_and_series_are_those_of_the_reference.
+// error: guarded within 1.5e-7; test core/fourier::the_guard_keeps_rays_from_both_ends.
 // parameter a, b: (sin, cos) of an angle.
 // parameter group: number of four bases, 0 .. M/4 - 1.
 // parameter bases: M, a multiple of 4.

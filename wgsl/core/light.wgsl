@@ -7,10 +7,10 @@
 // note: that a branch depends on.
 // equation: falloff = angular(ω) / (d² + radius²);  angular = u² (3 − 2u),  u = (cos − cos_outer) / (cos_inner − cos_outer), cut to 0..1
 // equation: texel = ((x / w · ½ + ½) width, (½ − y / w · ½) height), depth = z / w
-// error: places within 5e-7 of the map, 1e-6 back; test core_light::points_go_to_the_shadow_map_and_back.
+// error: places within 5e-7 of the map, 1e-6 back; test core/light::points_go_to_the_shadow_map_and_back.
 // error: direction within 4e-5, angular fall-off 2e-6 of its steepness, the whole 4e-6;
-// error: test core_light::light_falls_off_by_cones_and_inverse_squares.
-// error: metres of a texel within 1e-6 relative; test core_light::texels_are_as_wide_as_what_they_hold.
+// error: test core/light::light_falls_off_by_cones_and_inverse_squares.
+// error: metres of a texel within 1e-6 relative; test core/light::texels_are_as_wide_as_what_they_hold.
 // parameter clip: homogeneous clip coordinates of the map.
 // parameter texels: position in texels, (0, 0) the top left corner.
 // parameter depth: 0..1, in the map's convention.

@@ -23,8 +23,8 @@
 // equation: greatest weight at z = 1 / K(z, z);  bounds from the weights at z and at the roots x of K(x, z) = 0
 // equation: biased moments: m_j (1 − MOMENT_BIAS)
 // error: bounds within 6e-3, in the mean 5e-5; the truth outside of them by at most 1e-4;
-// error: test moments/bounds::bounds_are_those_of_the_reference.
-// error: cosine_of_third from -1.2e-7 to 3e-6; test moments/bounds::cosine_of_a_third_is_never_too_small.
+// error: test scattering/moments/bounds::bounds_are_those_of_the_reference.
+// error: cosine_of_third from -1.2e-7 to 3e-6; test scattering/moments/bounds::cosine_of_a_third_is_never_too_small.
 // parameter polynomials: of degree 1, 2 and 3, from `orthogonal_polynomials`.
 // parameter x: -1..1.
 // parameter z: place, -1..1.

@@ -11,9 +11,9 @@
 // equation: v = key · 1664525 + 1013904223; twice v.x += v.y v.z, v.y += v.z v.x, v.z += v.x v.y, with v ^= v >> 16 between (PCG3D)
 // equation: P(q) = mix over the corners c of the cell of dot(g_c, q − c), weights by fade(t) = 6 t⁵ − 15 t⁴ + 10 t³
 // equation: g_c = unit vector of the angle 2π (hash / 2³² − 1/8)
-// error: hashes exact; test core_noise::hashes_are_those_of_the_definition.
-// error: directions within 3e-7, fade 8e-7; test core_noise::directions_have_length_one_and_the_angle_of_the_hash.
-// error: noise within 1.5e-6; test core_noise::noise_is_that_of_the_reference.
+// error: hashes exact; test core/noise::hashes_are_those_of_the_definition.
+// error: directions within 3e-7, fade 8e-7; test core/noise::directions_have_length_one_and_the_angle_of_the_hash.
+// error: noise within 1.5e-6; test core/noise::noise_is_that_of_the_reference.
 // parameter key: three whole numbers, any bits.
 // parameter hash: any bits.
 // parameter corner, cell: whole cells, wrapping at 2^32.

@@ -7,8 +7,8 @@
 // note: cos(theta) = dot(w, l): looking at the sun is forward scattering.
 // equation: p_iso = 1 / (4π)
 // equation: p_HG(cos θ) = (1 − g²) / (4π (1 + g² − 2 g cos θ)^(3/2)),  ∫ p dω = 1,  ∫ p cos θ dω = g
-// error: henyey_greenstein within 2e-6 relative, isotropic 1e-7; test core_light::phase_functions_are_those_of_the_reference.
-// error: norm and mean cosine within 1e-4; test core_light::phase_functions_are_normalised_with_mean_cosine_g.
+// error: henyey_greenstein within 2e-6 relative, isotropic 1e-7; test core/light::phase_functions_are_those_of_the_reference.
+// error: norm and mean cosine within 1e-4; test core/light::phase_functions_are_normalised_with_mean_cosine_g.
 
 /// 1 / (4 pi), the value of the isotropic phase function, 1/sr.
 const ISOTROPIC: f32 = 0.07957747154594767;

@@ -3,7 +3,7 @@
 // summary: One triangle over the whole picture, for passes in fragment form.
 // source: the usual full-screen triangle.
 // equation: corners (−1, −1), (3, −1), (−1, 3): index 0, 1, 2
-// error: exact: every pixel of a picture is drawn; test command_run::a_full_screen_pass_draws_the_sky.
+// error: exact: every pixel of a picture is drawn; test command/run::a_full_screen_pass_draws_the_sky.
 // parameter index: 0..2.
 
 /// Clip-space position of corner `index`, 0..2, of a triangle that covers the picture.

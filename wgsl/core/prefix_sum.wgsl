@@ -7,9 +7,9 @@
 // note: The mean over the texels 0 .. i is stored at texel i (an inclusive prefix).
 // equation: mean_i = mean_(i−1) + (v_i − mean_(i−1)) w_i / W_i,  w_i = q^i, W_i = w_0 + .. + w_i,  q = exp(−optical_step)
 // equation: prefix weight of s texels: (1 − exp(−τ s)) / (1 − exp(−τ)), s for τ = 0
-// error: running mean within 5e-6; test core_fourier::running_means_are_those_of_the_reference.
+// error: running mean within 5e-6; test core/fourier::running_means_are_those_of_the_reference.
 // error: one_minus_exp within 1e-6 relative, prefix_weight 6e-4 over the range of the test;
-// error: test core_fourier::absorption_and_in_scattering_keep_their_precision.
+// error: test core/fourier::absorption_and_in_scattering_keep_their_precision.
 // parameter x: optical depth, from 0 up.
 // parameter texels: fractional, from 0 up.
 // parameter optical_step: optical depth of one texel, from 0 up.

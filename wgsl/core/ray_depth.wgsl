@@ -5,7 +5,7 @@
 // note: Taken from the far plane on, where forward depth is densest, so that nothing cancels there.
 // equation: distance(z) = (a + a' (z − far)) / (w + w' (z − far));  depth(t) = far + (t w − a) / (a' − t w')
 // error: within the budgets of f32 that the test derives for each camera;
-// error: test core_camera::depths_and_distances_on_a_ray_are_those_of_the_camera.
+// error: test core/camera::depths_and_distances_on_a_ray_are_those_of_the_camera.
 // parameter ndc: normalised device coordinates, -1..1.
 // parameter depth: 0..1.
 // parameter limit, distance: metres, from 0 up.

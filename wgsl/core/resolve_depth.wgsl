@@ -5,7 +5,7 @@
 // note: With a mean of distances a pixel half near, half sky scatters up to a third too much; with the mean of
 // note: transmittances it scatters what its samples scatter on average. Without extinction both are the same.
 // equation: T̄ = mean of exp(−σ (s_i − nearest));  s = nearest − ln(T̄) / σ,  σ = max(extinction, LEAST_SPREAD / (farthest − nearest))
-// error: within 2e-4 of the spread of the samples; test core_camera::distances_of_mean_transmittance.
+// error: within 2e-4 of the spread of the samples; test core/camera::distances_of_mean_transmittance.
 // parameter extinction: 1/m, from 0 up.
 // parameter nearest, farthest: metres, from 0 up.
 // parameter mean_transmittance: 0..1.

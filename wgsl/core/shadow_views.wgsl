@@ -5,7 +5,7 @@
 // note: Layer = view. A light ray belongs to the first view that contains it; all layers share `light.far_depth`.
 // note: The six tests are written out: an index that is not constant would copy the struct in every invocation.
 // equation: view v contains a point ⇔ w > 0, |x| ≤ w, |y| ≤ w of clip_from_world[v] · point; the first v is taken
-// error: places within 2e-5 of the map, points back 2e-6; test core_light::light_rays_find_their_view.
+// error: places within 2e-5 of the map, points back 2e-6; test core/light::light_rays_find_their_view.
 // parameter clip_from_world, world_from_clip: matrix of a view, and its inverse.
 // parameter view, count: number of the view, and of all views, 1..6.
 // parameter depth: 0..1, in the light's convention.

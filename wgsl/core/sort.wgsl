@@ -4,8 +4,8 @@
 // source: D. Merrill and A. Grimshaw, "High performance and scalable radix sorting" (2011); M. Herf, "Radix tricks" (2001).
 // note: Counters are packed so that the ranks of a workgroup of 256 threads take 8 KiB of its memory.
 // equation: key = bits XOR (0xffffffff where the sign is set, else 0x80000000);  digit = (key >> shift) AND 15
-// error: exact; test core_sort::keys_of_numbers_ascend_with_them.
-// error: sorting is exact and stable; test core_sort::keys_of_any_number_are_sorted_and_equal_ones_keep_their_order.
+// error: exact; test core/sort::keys_of_numbers_ascend_with_them.
+// error: sorting is exact and stable; test core/sort::keys_of_any_number_are_sorted_and_equal_ones_keep_their_order.
 // parameter value: any float.
 // parameter key: any bits.
 // parameter digit: 0..15.

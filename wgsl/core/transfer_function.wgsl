@@ -4,7 +4,7 @@
 // source: none; the usual 1D transfer function, dissertation on painterly volume rendering, 4.1.1.
 // note: The first texel is value 0 and the last value 1, whatever the table's length; between texels it is linear.
 // equation: (r, g, b, a)(v) = table at (v (width − 1) + ½) / width, linear between texels
-// error: of the texture unit, 8 bits of a share; whole pictures hold it; test painterly::hits_are_those_of_dense_sampling.
+// error: of the texture unit, 8 bits of a share; whole pictures hold it; test painterly/iso_raycast::hits_are_those_of_dense_sampling.
 // parameter value: 0..1; beyond that the end of the table.
 
 /// Colour, linear RGB, and opacity 0..1 of a value 0..1; beyond that the end of the table. `transfer`: one row, linear RGB and

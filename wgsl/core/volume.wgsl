@@ -5,8 +5,8 @@
 // note: Unit space is the box 0..1 of the volume, texture coordinates of the 3D texture; voxel i lies at (i + 0.5) / size.
 // equation: slab test: t_axis = (0 − o) / d and (1 − o) / d;  begins = max of the lesser, ends = min of the greater, within 0..1
 // equation: steps = ⌈metres / step_length⌉, from 1 to MOST_STEPS
-// error: parts of segments within 1e-5; test core_bricks::segments_enter_and_leave_the_box_where_they_do_in_f64.
-// error: steps and voxels exact; test core_bricks::steps_and_voxels_are_counted.
+// error: parts of segments within 1e-5; test core/bricks::segments_enter_and_leave_the_box_where_they_do_in_f64.
+// error: steps and voxels exact; test core/bricks::steps_and_voxels_are_counted.
 // parameter unit: place in unit space, the volume being 0..1.
 // parameter metres: from 0 up.
 // parameter size: voxels along each axis, from 1 up.

@@ -6,7 +6,7 @@
 // note: Positions are in unit space; voxel i lies at (i + 0.5) / size. Beyond the outermost voxels triangles keep the value of the nearest.
 // equation: triangle: φ_i(x) = Π axes max(0, 1 − |x size − ½ − i|), at the border held;  box: 1 in the voxel, else 0;  f(x) = Σ_i f_i φ_i(x)
 // error: pictures are the product with the matrix of these within 1e-3 of f64, transposed pairs within 1e-5;
-// error: test inverse::pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose.
+// error: test inverse/projection::pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose.
 // parameter unit: place in unit space, the volume being 0..1.
 // parameter size: voxels along each axis, from 1 up.
 // parameter voxel: numbers along each axis, from 0.

@@ -9,9 +9,9 @@
 // note: The index is kept to 0.01..100; what is not finite counts as 1.
 // equation: d(n v) / ds = ∇n, |v| = 1:  x ← x + ds v,  v ← (n v + ds ∇n) / |n v + ds ∇n|
 // error: rays and their weights within 1e-4, transposed pairs 1e-6;
-// error: test inverse_bent::bent_rays_are_those_of_the_reference_and_scatter_with_the_same_weights.
+// error: test inverse/bent::bent_rays_are_those_of_the_reference_and_scatter_with_the_same_weights.
 // error: where the index rises evenly errors fall with the step;
-// error: test inverse_bent::an_index_that_rises_evenly_bends_rays_upwards_along_catenaries.
+// error: test inverse/bent::an_index_that_rises_evenly_bends_rays_upwards_along_catenaries.
 // parameter world: direction in the world, metres.
 // parameter refraction: index of refraction, one texel a voxel; 0.01..100.
 // parameter unit: place in unit space.

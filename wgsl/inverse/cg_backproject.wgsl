@@ -8,8 +8,8 @@
 // note: the support on that plane, or of its extrusion over the slice; the projection of a box lies within that of its corners.
 // equation: (W' y)_i = Σ over pixels p, slices s of w_ps φ_i(x_ps) y_p, in a fixed order
 // error: transposed pairs within 1e-5: <Wx, y> = <x, W'y>;
-// error: test inverse::pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose.
-// error: no pixel is left out behind the eye; test inverse::planes_that_go_on_behind_the_eye_are_collected_from_all_their_pixels.
+// error: test inverse/projection::pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose.
+// error: no pixel is left out behind the eye; test inverse/projection::planes_that_go_on_behind_the_eye_are_collected_from_all_their_pixels.
 // parameter voxel: numbers along each axis, from 0.
 // parameter size: voxels along each axis, from 1 up.
 // parameter axis: unit vector, one of x, y and z.

@@ -3,7 +3,7 @@
 // summary: One number or three a voxel and a pixel.
 // source: none; arithmetic of one and of three is the same.
 // equation: weight of a step = exp(−τ) (1 − exp(−σ d)),  τ ← τ + σ d
-// error: haze is not lost: 1e-5; test inverse::haze_is_not_lost_in_rounding.
+// error: haze is not lost: 1e-5; test inverse/projection::haze_is_not_lost_in_rounding.
 // parameter texel: of a picture or volume.
 // parameter value: a number, or three.
 // parameter extinction: 1/m; negative counts as 0.

@@ -11,8 +11,8 @@
 // note: e is from -60 to 120, so that all powers of two that occur are floats: pictures below 1e-18 lose bits.
 // equation: n = trunc(value 2^(61 − e − b)), 64 bits with sign;  2^e > greatest value × bound of row sums, 2^b > pixels
 // error: the same bits in any order, within 1e-6 of what voxels collect;
-// error: test inverse_scatter::fixed_point_is_what_voxels_collect_and_the_same_bits_in_every_run.
-// error: sums do not overflow; test inverse_scatter::sums_do_not_overflow_where_all_rays_meet_one_voxel.
+// error: test inverse/scatter::fixed_point_is_what_voxels_collect_and_the_same_bits_in_every_run.
+// error: sums do not overflow; test inverse/scatter::sums_do_not_overflow_where_all_rays_meet_one_voxel.
 // parameter bits: of a float, sign ignored.
 // parameter pixels: of the picture, from 1 up; of `fixed_words` and `fixed_number` their exponent b.
 // parameter words: low and high 32 bits.

@@ -4,7 +4,7 @@
 // source: none; a tree of halves.
 // equation: sum = Σ over 128 threads by halves: s_t += s_(t + 64), s_t += s_(t + 32), ..
 // error: the same order in every run; solvers with it reach the least squares;
-// error: test inverse_solver::iterations_come_to_the_least_squares_between_bounds.
+// error: test inverse/solver::iterations_come_to_the_least_squares_between_bounds.
 // parameter value: any four numbers.
 // parameter group, groups: number of the group and numbers of groups along each axis.
 

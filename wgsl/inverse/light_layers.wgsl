@@ -7,8 +7,8 @@
 // note: of a point is what lies between it and the place where its own ray enters the box, which is known exactly.
 // note: Layers lie across the axis of the light, so that every ray of it crosses all of them, one after the other.
 // equation: layer k holds the optical depth from the first layer to k along the light's ray;  τ(point) = τ(own layer) − τ(layer of entry)
-// error: optical depths within 1e-6; test inverse_preparation::optical_depths_are_those_of_the_reference.
-// error: light of many directions: 0.003 rms, 0.015 at most; test inverse_light::light_of_many_directions_is_that_of_fine_marching.
+// error: optical depths within 1e-6; test inverse/preparation::optical_depths_are_those_of_the_reference.
+// error: light of many directions: 0.003 rms, 0.015 at most; test inverse/light::light_of_many_directions_is_that_of_fine_marching.
 // parameter unit: place in unit space.
 // parameter pixel: position in the light's view, pixels.
 // parameter layer: 0 .. slices, fractional.

@@ -4,7 +4,7 @@
 // source: thesis 7.4.3: pictures are a product with the light that comes from each part of the surroundings.
 // equation: none: it only says where the numbers of a light lie.
 // error: none of its own; both ways multiply with the matrix of lights within 1e-4;
-// error: test inverse_light_solver::both_ways_multiply_with_the_matrix_of_lights_and_its_transpose.
+// error: test inverse/light_solver::both_ways_multiply_with_the_matrix_of_lights_and_its_transpose.
 // definition RGB: three channels, four numbers a light and a pixel; else one.
 
 #ifdef RGB

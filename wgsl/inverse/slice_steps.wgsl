@@ -10,7 +10,7 @@
 // note: All positions are in unit space: the box 0..1 of the volume.
 // equation: ray(p) = (o + x o_right + y o_down) + t (d + x d_right + y d_down);  slice k: k / n ≤ axis · x < (k + 1) / n
 // equation: weights of a ray: T_k (1 − exp(−σ_k d_k)),  T_k = exp(−Σ_(i<k) σ_i d_i);  Σ = 1 − T
-// error: pictures within 1e-3 of the f64 matrix; test inverse::pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose.
+// error: pictures within 1e-3 of the f64 matrix; test inverse/projection::pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose.
 // parameter pixel: position in the picture, pixels.
 // parameter limit: metres, from 0 up.
 // parameter span: part of the ray in the box, in lengths of its direction.

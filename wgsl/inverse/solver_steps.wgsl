@@ -13,7 +13,7 @@
 // equation: r = −½ gradient, 0 at a bound it pushes against;  β = max(0, (<r, M r> − <r, M r₋>) / <r₋, M r₋>);  d = M r + β d₋
 // equation: step = <r, d> / <d, A d>;  M: pace 1 / (row sum of W'C W + 42 l + s + t)
 // error: solutions reach the least squares between bounds within 1e-9 of a descent;
-// error: test inverse_solver::iterations_come_to_the_least_squares_between_bounds.
+// error: test inverse/solver::iterations_come_to_the_least_squares_between_bounds.
 // parameter value: of a voxel, between the bounds.
 // parameter gradient: half gradient of the misfit there.
 // parameter sent: from 0 up.

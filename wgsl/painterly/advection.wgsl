@@ -6,8 +6,8 @@
 // note: 60 degrees, where there is no direction, and at the edge of the picture. Steps are of the midpoint rule.
 // equation: mean along the line: m = (n_0 + Σ n_i) / (1 + count), n hashed noise;  shown: ½ + g (m − ½),  g from 1 to √count by contrast
 // equation: step: x ← x + h v(x + ½ h v(x)), the sign of v kept
-// error: means along lines of a constant field within 1e-5; test painterly_advect::a_constant_field_gives_means_along_lines.
-// error: where there is no direction within 1e-5; test painterly_advect::lines_end_where_there_is_no_direction_or_a_kink.
+// error: means along lines of a constant field within 1e-5; test painterly/advect::a_constant_field_gives_means_along_lines.
+// error: where there is no direction within 1e-5; test painterly/advect::lines_end_where_there_is_no_direction_or_a_kink.
 // parameter pixel: column and row, from 0.
 // parameter seed: any bits.
 // parameter curvature: in z and w (cos 2a, sin 2a) of the direction in the picture, 0 where there is none.

@@ -10,8 +10,8 @@
 // note: Where both curvatures are alike there is no direction, and where the value hardly changes there is no curvature.
 // equation: (a b; b c) = side Pᵀ H P / |g| in a basis P of the tangent plane;  κ = ½ (a + c) ± √(¼ (a − c)² + b²)
 // equation: direction of κ₁: half the angle of (½ (a − c), b);  in metres: gradient Bᵀ g, second derivatives Bᵀ H B
-// error: eigenvalues within 1e-4, directions 0.05 degrees; test painterly_curvature_functions::curvatures_are_eigenvalues_in_any_space.
-// error: spheres in any box within 2 % of their radius; test painterly_curvature::spheres_bend_by_their_radius_in_any_box.
+// error: eigenvalues within 1e-4, directions 0.05 degrees; test painterly/curvature_functions::curvatures_are_eigenvalues_in_any_space.
+// error: spheres in any box within 2 % of their radius; test painterly/curvature::spheres_bend_by_their_radius_in_any_box.
 // parameter double: unit vector (cos 2a, sin 2a).
 // parameter unit_from_world: world, metres, to unit space; affine.
 // parameter size: voxels along each axis.

@@ -11,10 +11,10 @@
 // equation: solid: opacity(v(x)) ≥ iso;  secant: t = t₀ + (t₁ − t₀) (iso − o₀) / (o₁ − o₀)
 // equation: Phong: albedo (k_d max(0, <n, l>) E + A) + k_s max(0, <r, l>)^α E
 // equation: flow = pixel now − pixel before;  tolerance = pixels side √(1 − c²) / c + voxel
-// error: hits within 0.1 voxel of dense sampling; test painterly::hits_are_those_of_dense_sampling.
-// error: gradients of quadratic fields within a degree and 2 %; test painterly::gradients_of_quadratic_fields_are_within_a_degree.
-// error: flow within 0.1 pixel; test painterly::flow_is_the_motion_of_the_point.
-// error: Phong lighting within 2e-4; test painterly_edges/shading::light_is_phong_s.
+// error: hits within 0.1 voxel of dense sampling; test painterly/iso_raycast::hits_are_those_of_dense_sampling.
+// error: gradients of quadratic fields within a degree and 2 %; test painterly/iso_raycast::gradients_of_quadratic_fields_are_within_a_degree.
+// error: flow within 0.1 pixel; test painterly/iso_raycast::flow_is_the_motion_of_the_point.
+// error: Phong lighting within 2e-4; test painterly/edges/shading::light_is_phong_s.
 // parameter texel: of the volume, any float.
 // parameter scale, offset: from texels to values 0..1.
 // parameter iso_value: opacity, above 0 up to 1.

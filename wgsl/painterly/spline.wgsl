@@ -10,7 +10,7 @@
 // equation: f(x) = Σ_i v_i β³(x − i);  weights ⅙ ((1−a)³, 4 − 6a² + 3a³, 4 − 6b² + 3b³, a³), b = 1 − a;  slopes and bends are their derivatives
 // equation: two weights w₀, w₁ of one sign: (w₀ + w₁) fetch(i + w₁ / (w₀ + w₁))
 // error: 64 loads within 1e-5 of the sum over all voxels, fetches within 1/256;
-// error: test painterly_curvature_functions::fetches_and_loads_are_the_sum_over_all_voxels.
+// error: test painterly/curvature_functions::fetches_and_loads_are_the_sum_over_all_voxels.
 // parameter weights: of four voxels, the first two and the last two of one sign each.
 // parameter unit: place in unit space, the volume being 0..1.
 // parameter size: voxels along each axis.

@@ -5,7 +5,7 @@
 // note: Sizes in Table 5.1 have no unit: here they are pixels of the picture that is drawn, whatever the size of the sources.
 // note: A stroke keeps the point of the volume that it was put on, not a pixel: flow read at its old pixel would err and add up.
 // equation: chunks = ⌈strokes / 32⌉, blocks = ⌈size / (8, 4)⌉
-// error: exact; test painterly_strokes::coarse_strokes_come_first_and_old_ones_before_new_ones.
+// error: exact; test painterly/strokes::coarse_strokes_come_first_and_old_ones_before_new_ones.
 // parameter three: numbers of the coarse, medium and fine layer.
 // parameter layer: 0..2.
 // parameter strokes: how many, from 0.

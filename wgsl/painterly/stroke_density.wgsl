@@ -10,7 +10,7 @@
 // equation: D = Σ κ mix(opacity, fades to, anticipation) brush
 // equation: birth: p = min(p_layer, max(0, D_min − D) / (κ opacity area));  deletion: p = 1 − D_max / D where D > D_max
 // error: densities within 1e-8, births 1e-5, what is left after deletion 1e-6;
-// error: test painterly_stroke_functions::births_fill_gaps_and_deletions_reach_the_maximum.
+// error: test painterly/stroke_functions::births_fill_gaps_and_deletions_reach_the_maximum.
 // parameter anticipation: 0..1: how much of the opacity to come counts.
 // parameter density, least, most: densities, from 0 up.
 // parameter unit: kappa, density of one opaque stroke, above 0.

@@ -6,7 +6,7 @@
 // equation: corner = position · picture size + size ((i − ½) (cos φ, sin φ) + aspect (j − ½) (−sin φ, cos φ)),  i, j = 0, 1
 // equation: tint = 1 + variation ν₁, size = size (1 + variation ν₂),  ν in −1..1 of the stroke's hash
 // error: corners within 1e-3 of the picture's size, and as many;
-// error: test painterly_stroke_functions::quads_have_their_place_size_and_orientation.
+// error: test painterly/stroke_functions::quads_have_their_place_size_and_orientation.
 // parameter vertex: 0..5.
 // parameter corner: 0..3.
 // parameter place: pixels, (0, 0) the top left corner.

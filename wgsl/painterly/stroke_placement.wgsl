@@ -8,8 +8,8 @@
 // equation: layer = number of thresholds ≤ magnitude;  stays: begin / (1 + h) ≤ magnitude < end (1 + h)
 // equation: chance: hash / 2³² < p, 24 bits
 // error: frequencies within what statistics allow;
-// error: test painterly_stroke_placement::placement_draws_evenly_and_anew_in_every_pixel_layer_and_frame.
-// error: thresholds exact; test painterly_stroke_placement::thresholds_divide_layers_and_hysteresis_holds_strokes_in_theirs.
+// error: test painterly/stroke_placement::placement_draws_evenly_and_anew_in_every_pixel_layer_and_frame.
+// error: thresholds exact; test painterly/stroke_placement::thresholds_divide_layers_and_hysteresis_holds_strokes_in_theirs.
 // parameter magnitude: of the gradient, from 0 up; negative for no surface.
 // parameter thresholds: where layers end, ascending.
 // parameter pixel: column and row, or number in the queue, from 0.

@@ -5,7 +5,7 @@
 // note: All of one size. A texel with a distance, normal or gradient magnitude that is not finite counts as no surface; a
 // note: colour that is not finite is black, and a curvature that is not finite is none.
 // equation: none: it reads what the ray caster wrote.
-// error: exact; what is not finite is no surface; test painterly_stroke_life::sources_that_are_not_finite_do_no_harm.
+// error: exact; what is not finite is no surface; test painterly/stroke_life::sources_that_are_not_finite_do_no_harm.
 // parameter pixel: column and row of the sources, from 0.
 // definition CURVATURE: strokes may follow the direction of greatest curvature.
 // binding color: premultiplied linear RGB, alpha 1 where there is a surface; rgba16float.

@@ -10,10 +10,10 @@
 // note: a frame, against "seamless"; 10 % may be meant. All are rates a sixtieth of a second here, at any frame rate.
 // equation: share in a step of s seconds: 1 − (1 − rate)^(60 s);  x ← x + share (goal − x), angles by the shorter way modulo π
 // equation: across the gradient (gx, gy) of the picture: φ = atan2(gx, −gy)
-// error: rates within 1e-6, over many frames 1e-5; test painterly_stroke_functions::rates_are_the_same_at_any_frame_rate.
-// error: orientations within 5e-6; test painterly_stroke_functions::orientations_turn_the_shorter_way_modulo_half_a_turn.
+// error: rates within 1e-6, over many frames 1e-5; test painterly/stroke_functions::rates_are_the_same_at_any_frame_rate.
+// error: orientations within 5e-6; test painterly/stroke_functions::orientations_turn_the_shorter_way_modulo_half_a_turn.
 // error: directions in the picture within 2e-4;
-// error: test painterly_stroke_functions::strokes_lie_at_right_angles_to_the_gradient_in_the_picture.
+// error: test painterly/stroke_functions::strokes_lie_at_right_angles_to_the_gradient_in_the_picture.
 // parameter old, goal: radians.
 // parameter rate: share of the way, 0..1.
 // parameter world: metres in the world.

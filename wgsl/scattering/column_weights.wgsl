@@ -7,7 +7,7 @@
 // note: columns.
 // equation: slices: w_i = exp(−τ i), τ = σ radius_max / (width k);  around a light: transmittance times phase, over columns linear in the light angle
 // equation: projective: w_i = T(x_i) (1 − exp(−σ Δ_i)) / σ
-// error: prefix means with weights and fall-offs within 1e-4; test moments_weights::filter_takes_weights_and_fall_offs.
+// error: prefix means with weights and fall-offs within 1e-4; test scattering/moments/weights::filter_takes_weights_and_fall_offs.
 // parameter row: of the map, from 0.
 // parameter size: columns and rows of the map.
 // parameter first: column from which weights count, up to `column`.

@@ -11,7 +11,7 @@
 // note: A pass that makes more of a ray than its texel imports this instead of reading what was written.
 // equation: L = albedo I σ ∫ p exp(−σ (t + d)) / (d² + r²) dt × mean of V × fall-off over the columns
 // error: without blockers radiance within 3 % of the airlight integral;
-// error: test local_lights::without_blockers_radiance_is_that_of_the_airlight_integral.
+// error: test scattering/local_lights::without_blockers_radiance_is_that_of_the_airlight_integral.
 // parameter pixel: column and row of the picture, from 0.
 // definition COLORS: 1 for the fall-off of a spot, 3 with LIGHT_TEXTURE, as in the filter.
 // definition EPIPOLE_MARCH: march where a ray covers fewer than 8 texels; blends until 16.

@@ -7,8 +7,8 @@
 // note: A pass that makes more of a ray than its texel imports this instead of reading what was written.
 // equation: V̄ = Σ regions (mean(to) W(to) − mean(from) W(from)) / Σ W,  W(x) = (1 − exp(−σ x reach)) / σ
 // error: rows lit up to a column: within 1.5e-3 in the mean, 0.01 at most;
-// error: test projective/closed_form::a_row_lit_up_to_a_column_has_its_closed_form.
-// error: pictures reach their figures; test projective/pictures::pictures_reach_their_figures.
+// error: test scattering/projective/closed_form::a_row_lit_up_to_a_column_has_its_closed_form.
+// error: pictures reach their figures; test scattering/projective/pictures::pictures_reach_their_figures.
 // parameter first: texel at which a region begins.
 // parameter reach: metres along the reference ray for one of X.
 // parameter extinction: 1/m, from 0 up.

@@ -7,7 +7,7 @@
 // equation: mean = Σ w_i lit(x_i) / Σ w_i,  w_i = exp(−σ i Δ);  around a light: steps of equal angle, w_i = p(cos_i) exp(−σ path_i)
 // error: marched pictures: visibility within 4.9e-4 of the closed form, radiance 1.5e-3;
 // error: test scattering/closed_forms::an_empty_shadow_map_lights_everything_and_a_slab_has_its_closed_form.
-// error: around a light within 1 % of the airlight integral; test local_lights::without_blockers_radiance_is_that_of_the_airlight_integral.
+// error: around a light within 1 % of the airlight integral; test scattering/local_lights::without_blockers_radiance_is_that_of_the_airlight_integral.
 // parameter point: metres in the world.
 // parameter origin, direction: of the view ray in the world, metres and unit vector.
 // parameter distance: metres, from 0 up.

@@ -13,8 +13,8 @@
 // note: Both ways are attenuated: view ray of length t, and light ray of length d.
 // equation: tan α = t sin θ / (D − t cos θ);  t(α) = D sin α / sin(θ + α);  dt / d² = dα / (D sin θ)
 // equation: airlight = ∫ p(cos) exp(−σ (t + d)) / (d² + r²) dt, by 8 Gauss-Legendre points a side in asinh of the angle
-// error: airlight within 1e-3, nearer than twice the radius 5e-2; test scattering_modules::airlight_is_the_integral.
-// error: angles and distances within the budgets that the test derives; test scattering_modules::angles_and_distances_belong_together.
+// error: airlight within 1e-3, nearer than twice the radius 5e-2; test scattering/functions::airlight_is_the_integral.
+// error: angles and distances within the budgets that the test derives; test scattering/functions::angles_and_distances_belong_together.
 // parameter position: of the light in the world, metres.
 // parameter eye, fallback: of the world, metres, and a unit vector.
 // parameter texel: as `local_slice_texel` made it.

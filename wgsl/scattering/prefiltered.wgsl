@@ -6,7 +6,7 @@
 // note: which share of the first texels of a row is lit at the depth of a ray.
 // equation: none of its own: the mean over the first texels of a row by the method that was built, rows mixed by their share
 // error: by the method: see visibility_fourier, visibility_moments, visibility_rank and visibility_wavelet;
-// error: test rank/pictures::pictures_mix_the_rows_about_a_ray_around_the_seam_too.
+// error: test scattering/rank/pictures::pictures_mix_the_rows_about_a_ray_around_the_seam_too.
 // parameter row: of the map, whole.
 // parameter depth: of the ray, 0..1.
 // parameter color: 0..2.

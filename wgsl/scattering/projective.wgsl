@@ -14,8 +14,8 @@
 // equation: row: Y / X, depth: Z / X, columns: u = (x − n) / (f − n) · f / x in each split;  orthographic: Y, Z − tilt X, x
 // equation: W(s) = (1 − exp(−σ s)) / σ;  share of a texel: (W(x) − W(begin)) W(end) / ((W(end) − W(begin)) W(x))
 // error: places and rays within the budgets of f32 that the test derives;
-// error: test projective/geometry::shader_places_points_and_rays_as_the_reference_does.
-// error: marched rows within 0.004 of the exact sums; test projective/pictures::marched_rows_are_the_exact_sums.
+// error: test scattering/projective/geometry::shader_places_points_and_rays_as_the_reference_does.
+// error: marched rows within 0.004 of the exact sums; test scattering/projective/pictures::marched_rows_are_the_exact_sums.
 // parameter width: columns of the map.
 // parameter height: rows of the map.
 // parameter row: of the map, row j at j.

@@ -6,7 +6,7 @@
 // note: the sort `counts` is free for what a pass makes of the ranks.
 // note: Rows of more than 2048 columns are not taken: their order would not fit into workgroup memory.
 // equation: value = ⌊depth (2^bits − 1) + ½⌋;  start(v) = texels with a smaller value;  rank = start(value) + equal ones before
-// error: exact; test rank/counts::counts_are_exactly_those_of_the_stepped_map.
+// error: exact; test scattering/rank/counts::counts_are_exactly_those_of_the_stepped_map.
 // parameter column, row, columns: of the rectified map, 2048 columns at most.
 // parameter value: 0 .. 2^RANK - 1, or NONE.
 // parameter block, blocks: of 32 columns.

@@ -13,7 +13,7 @@
 // equation: reference: k = sin of the bisectrix of the fastest and slowest ray;  optimum (Eq. 4.12): k = √(k_min k_max)
 // error: frames and slices within the budgets that the test derives; test scattering/frame::frame_and_slices_are_those_of_the_reference.
 // error: maps within 1e-4; test scattering/rectified_map::rectified_maps_are_those_of_the_reference.
-// error: greatest_sine within 2 %; test scattering_modules::greatest_sine_of_a_slice_is_within_two_percent.
+// error: greatest_sine within 2 %; test scattering/functions::greatest_sine_of_a_slice_is_within_two_percent.
 // parameter point: homogeneous, world.
 // parameter azimuth: radians.
 // parameter row: of the map, row j at j.

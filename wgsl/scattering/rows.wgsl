@@ -7,7 +7,7 @@
 // note: Subtracting amplifies what the bases are stored with: 8 bits of a mean over 1024 texels are 0.013 of a mean over
 // note: its last 64. Short stretches are widened to LEAST_STRETCH texels towards the eye.
 // equation: region r of n begins at ⌈r width / n⌉;  a ray of s texels is read at s − ½
-// error: pictures with regions within 5e-4 of those without; test projective/pictures::regions_and_near_planes_keep_the_figures.
+// error: pictures with regions within 5e-4 of those without; test scattering/projective/pictures::regions_and_near_planes_keep_the_figures.
 // parameter begin, end: texels before the ray begins and ends, fractional.
 // parameter texels: fractional, from 0 up.
 // parameter width: columns of the map.

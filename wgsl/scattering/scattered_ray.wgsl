@@ -3,7 +3,7 @@
 // summary: What evaluating a pixel's view ray gives, and the texel that is kept of it.
 // source: thesis 4.3.3, Listing 4.4.
 // equation: none: it only says what is kept of a ray.
-// error: exact; test transfer_fused::directional_lights_are_restyled_as_by_a_pass_of_its_own.
+// error: exact; test stylize/transfer/fused::directional_lights_are_restyled_as_by_a_pass_of_its_own.
 
 /// What stands for infinity, metres.
 const FARTHEST: f32 = 1e15;

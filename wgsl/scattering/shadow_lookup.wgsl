@@ -5,7 +5,7 @@
 // note: Nearest texel. The blocker is the point of the light ray itself at the stored depth, also where the texel is
 // note: wide. Outside every map, and where nothing is stored, there is none; non-finite depths count as empty.
 // equation: lit ⇔ nothing is stored, or depth ≤ stored (reversed: ≥)
-// error: one cascade shows what a single map does, but for 1 in 500 texels; test local_lights_directional::one_cascade_is_the_single_map.
+// error: one cascade shows what a single map does, but for 1 in 500 texels; test scattering/local_lights_directional::one_cascade_is_the_single_map.
 // error: depths that are not finite count as empty; test scattering/any_input::depths_that_are_not_finite_count_as_empty_and_far.
 // parameter map: depths, a depth format or r32float.
 // parameter maps: depths, a layer a view.

@@ -6,7 +6,7 @@
 // note: the mean of V weighted by transmittance. With plain average visibility the same form is Eq. 4.2.
 // note: Listing 4.4 prints exp(disToSurface * sigma): the exponent is negative.
 // equation: L = albedo p(cos) L_e (1 − exp(−σ s)) V̄;  T = exp(−τ)
-// error: in_scattered within 5e-6 relative, transmittance 3e-7; test core_fourier::absorption_and_in_scattering_keep_their_precision.
+// error: in_scattered within 5e-6 relative, transmittance 3e-7; test core/fourier::absorption_and_in_scattering_keep_their_precision.
 // parameter optical_depth: from 0 up; less counts as 0.
 // parameter light_radiance: irradiance at normal incidence, linear RGB, from 0 up.
 

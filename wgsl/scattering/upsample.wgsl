@@ -7,7 +7,7 @@
 // note: The mean visibility over a ray of length s is off by at most |s - t| / max(s, t) as that over a length t:
 // note: relative difference of distance is what a neighbour may be trusted by.
 // equation: closeness = 1 / (1 + ((s' − s) / (tolerance s))²);  weights ∝ b_i c_i + LEAST_WEIGHT (1 − Σ b c) c_i
-// error: weights within the budget that the test derives; test resolution/upsampling::upsampling_is_joint_bilateral.
+// error: weights within the budget that the test derives; test scattering/resolution/upsampling::upsampling_is_joint_bilateral.
 // parameter pixel: column and row, from 0.
 // parameter bilinear: weights 0..1 that add up to 1.
 // parameter closeness: above 0 up to 1.

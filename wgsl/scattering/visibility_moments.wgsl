@@ -15,9 +15,9 @@
 // note: layer more holds its mean: their product is the mean of visibility times fall-off, for each colour.
 // equation: V̄ between the bounds of the share of stored depths ≥ z_ray: upper + MOMENT_BLEND (lower − upper)
 // equation: stored: round((m · ½ + ½) (2²¹ − 1)), six of 21 bits in 128
-// error: stored moments within 0.57 steps; test moments/filter::texels_hold_the_moments.
-// error: prefix means within 1e-4; test moments/filter::filter_writes_prefix_means.
-// error: visibility read within 2e-3; test moments/filter::reads_are_nearest_or_bilinear.
+// error: stored moments within 0.57 steps; test scattering/moments/filter::texels_hold_the_moments.
+// error: prefix means within 1e-4; test scattering/moments/filter::filter_writes_prefix_means.
+// error: visibility read within 2e-3; test scattering/moments/filter::reads_are_nearest_or_bilinear.
 // parameter depth: of the ray or texel, 0..1.
 // parameter texel: as `pack_moments` made it.
 // parameter map: packed moments, rgba32uint.

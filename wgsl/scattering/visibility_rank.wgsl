@@ -22,8 +22,8 @@
 // note: ray that crosses texels fastest, at right angles to the light where the row has such a ray.
 // equation: V̄ = 1 − |{i < s : z_i < z_ray}| / s,  count = base + popcount(mask AND low(rank mod 32)) + popcount(less AND low(column mod 32))
 // equation: weighted: shares of exp(−τ i) in place of ones
-// error: counts exact; test rank/counts::counts_are_exactly_those_of_the_stepped_map.
-// error: weighted means within 8 (1 − e^-a), a the optical depth of a texel; test rank/weighted::weighted_means_err_by_no_more_than_proven.
+// error: counts exact; test scattering/rank/counts::counts_are_exactly_those_of_the_stepped_map.
+// error: weighted means within 8 (1 − e^-a), a the optical depth of a texel; test scattering/rank/weighted::weighted_means_err_by_no_more_than_proven.
 // parameter depth: of the ray, 0..1.
 // parameter less, limit: a bit a column; four bits of the ray's value.
 // parameter planes: bit planes, four a layer.

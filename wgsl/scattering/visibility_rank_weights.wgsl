@@ -11,8 +11,8 @@
 // note: greatest weight of the block, n <= 32 of its columns covered; C that of the chunk, m <= 32 of its ranks meant; plus
 // note: an eighth of the optical depth of a texel, in which weights are taken as constant, and 1e-5 for f32.
 // equation: mean = (left − dark + Σ_p 2^p popcount(plane_p AND lit) step) / total, weights in steps of the greatest of their chunk or block
-// error: within the bound of the note for any weights; test rank_weights::means_err_by_no_more_than_proven_whatever_the_weights.
-// error: equal weights within 1e-6; test rank_weights::equal_weights_are_counted_exactly.
+// error: within the bound of the note for any weights; test scattering/rank/weights::means_err_by_no_more_than_proven_whatever_the_weights.
+// error: equal weights within 1e-6; test scattering/rank/weights::equal_weights_are_counted_exactly.
 // parameter colors: 0, 1 or 3.
 // parameter channel: 0 .. colors.
 // parameter weight_bits: of a weight, 8 or 16.

@@ -10,7 +10,7 @@
 // note: difference of two sums is a place, and of the sums of two blocks how many smaller digits lie between them.
 // equation: level by level: low ← next(d) + equal before low, high the same, dark ← dark + smaller between low and high
 // equation: V̄ = 1 − (dark + part [end dark]) / s
-// error: exactly what rank queries count; test wavelet::pictures_are_those_of_rank_queries.
+// error: exactly what rank queries count; test scattering/wavelet::pictures_are_those_of_rank_queries.
 // parameter texel: two bits of 32 places and four sums.
 // parameter wavelet: levels one after the other along columns, rgba32uint.
 // parameter first: first column of the level.

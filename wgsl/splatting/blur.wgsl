@@ -6,7 +6,7 @@
 // note: side, mended by a parabola for what cutting and sampling miss of the variance. Variances beyond MOST_VARIANCE count as that.
 // equation: up to ½: (½ v, 1 − v, ½ v);  beyond: w_k ∝ exp(−k² / 2v) (1 + s (k² − v₀)), s so that Σ w_k k² = v, Σ w_k = 1
 // error: sums of weights within 5e-7, variances 2e-6 relative;
-// error: test splatting_soft/blur::kernels_of_blurs_have_the_variance_that_was_asked_for.
+// error: test splatting/soft/blur::kernels_of_blurs_have_the_variance_that_was_asked_for.
 // parameter variance: in squares of the distance between taps, from 0 up; counts up to 16.
 // parameter offset: 0..12.
 

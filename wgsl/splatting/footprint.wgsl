@@ -9,8 +9,8 @@
 // note: they end and begin at the same value of the same function.
 // equation: k(r²) = scale (exp(−r² / 2σ²) − edge (1 + (R² − r²) / 2σ²)), 0 beyond R;  ∫ k dV = 1
 // equation: section = ∫ from begin to end of k(square + t²) dt, by erf and a cubic
-// error: error function within 4.3e-6; test splatting_functions::the_error_function_is_that.
-// error: sections within 1.5e-5 of the peak; test splatting_functions::sections_of_footprints_are_integrals_of_the_kernel.
+// error: error function within 4.3e-6; test splatting/functions::the_error_function_is_that.
+// error: sections within 1.5e-5 of the peak; test splatting/functions::sections_of_footprints_are_integrals_of_the_kernel.
 // parameter x: any number.
 // parameter begin, end: voxels along the ray, from where it comes nearest.
 

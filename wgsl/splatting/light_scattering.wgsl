@@ -16,9 +16,9 @@
 // note: the variance then is max(free_path, D)^2 / 3, and pictures are the same for any number of thinner sheets.
 // equation: cone_share(g, γ) = 2π ∫₀^γ p_HG(cos θ) sin θ dθ = (1 + g) o / ((√q + 1 − g) √q),  o = 1 − cos γ, q = 1 + g² − 2 g cos γ
 // equation: t = T + a (1 − T) f, r = a (1 − T) b, T = exp(−τ);  variance = max(free_path, D)² mean(tan² θ) / 6
-// error: shares within 2e-5 relative, slopes 2e-3; test splatting_scattering/kernels::shares_and_slopes_of_cones_are_integrals.
-// error: kernels: sum within 5e-7, variance 5e-6 relative; test splatting_scattering/kernels::kernels_have_their_sum_and_variance.
-// error: light that is only scattered on is kept within 5e-5; test splatting_scattering/light::light_that_is_only_scattered_on_is_kept.
+// error: shares within 2e-5 relative, slopes 2e-3; test splatting/scattering/kernels::shares_and_slopes_of_cones_are_integrals.
+// error: kernels: sum within 5e-7, variance 5e-6 relative; test splatting/scattering/kernels::kernels_have_their_sum_and_variance.
+// error: light that is only scattered on is kept within 5e-5; test splatting/scattering/light::light_that_is_only_scattered_on_is_kept.
 // parameter point: metres in the world.
 // parameter variance: texels^2, from 0 up.
 // parameter g: mean cosine, -0.999..0.999.

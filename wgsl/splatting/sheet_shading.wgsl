@@ -6,8 +6,8 @@
 // note: itself is the mean over its depth, so that a picture of few sheets is neither too bright nor too dark.
 // equation: mean of exp(−x) over 0..τ = (1 − exp(−τ)) / τ;  ∇f = (Δa b×c + Δb c×a + Δc a×b) / (a · b×c)
 // equation: scattered = albedo opacity (ambient + E p_HG(cos));  Phong: opacity (color (A + E/π k_d <n, l>) + E/π k_s <r, e>^α)
-// error: mean transmittance within 1.5e-6; test splatting_functions::the_mean_transmittance_is_that_of_the_depth.
-// error: gradients of linear fields within 5e-6 relative; test splatting_functions::gradients_of_linear_fields_are_exact.
+// error: mean transmittance within 1.5e-6; test splatting/functions::the_mean_transmittance_is_that_of_the_depth.
+// error: gradients of linear fields within 5e-6 relative; test splatting/functions::gradients_of_linear_fields_are_exact.
 // parameter transfer: one row, linear RGB and opacity.
 // parameter linear_sampler: linear, clamped to the edge.
 // parameter value: mean value of the sheet, from 0 up.

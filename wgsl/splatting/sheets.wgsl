@@ -7,7 +7,7 @@
 // note: rays cross sheets at 45 degrees or more from the sheet. With that choice no pair of directions leaves it undefined.
 // equation: height = n · x;  sheet i: first + i thickness ≤ height < first + (i + 1) thickness;  metres = thickness / |n · d|
 // equation: value = c + m / 2⁹ + f / 2¹⁴, multiples of 2⁻⁹, 2⁻⁵ and 2⁻⁵
-// error: parts exact, their sum within 1.5e-6; test splatting_functions::exact_parts_are_multiples_that_half_floats_hold.
+// error: parts exact, their sum within 1.5e-6; test splatting/functions::exact_parts_are_multiples_that_half_floats_hold.
 // parameter point: metres in the world.
 // parameter height: metres along the normal.
 // parameter value: from 0 up to 4 in all.

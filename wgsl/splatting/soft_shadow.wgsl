@@ -20,8 +20,8 @@
 // note: wrong, so the darker is taken.
 // equation: variance at q of an occluder at q_o: (0.312 w)² (q − q_o)²,  q = −1 / distance of the light, or height
 // equation: light = Π layers × min(1 − Σ taken, darkest)
-// error: penumbras within 10 % of their width; test splatting_soft/half_planes::penumbras_of_half_planes_have_their_width_at_any_tilt.
-// error: a point of light casts hard shadows; test splatting_soft/limits::a_point_of_light_casts_hard_shadows.
+// error: penumbras within 10 % of their width; test splatting/soft/half_planes::penumbras_of_half_planes_have_their_width_at_any_tilt.
+// error: a point of light casts hard shadows; test splatting/soft/limits::a_point_of_light_casts_hard_shadows.
 // parameter height: metres along the normal; NO_SURFACE for none.
 // parameter side: metres of a texel along both axes.
 // parameter slope: metres per metre, from 0 up.

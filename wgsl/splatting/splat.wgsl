@@ -6,7 +6,7 @@
 // note: volumes of unequal, turned or skewed voxels need nothing else.
 // equation: voxel (i, j, k) = (index mod w, (index / w) mod h, index / (w h));  reach along d = radius |Mᵀ d|, M: voxels to metres
 // error: footprints of a constant volume add up to a constant within 1 %;
-// error: test splatting_pictures::footprints_of_a_constant_volume_add_up_to_a_constant.
+// error: test splatting/pictures::footprints_of_a_constant_volume_add_up_to_a_constant.
 // parameter index: number of the voxel, x fastest.
 // parameter matrix: affine.
 // parameter direction: unit vector in the world.

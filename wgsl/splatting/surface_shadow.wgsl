@@ -6,8 +6,8 @@
 // note: the lower is the nearer. Footprints end at surfaces, so that a texel of the shadow buffer keeps what reached its
 // note: surface. A comparison of heights then is right before, within and behind the volume (regions 1, 2 and 3).
 // equation: share = (h₁ − h₀) / thickness;  mean before the surface = mean / share;  light = Σ corners weight [surface not in range] reached
-// error: shadows of polygons are those of rays, 1 % of what is lit; test splatting_polygons::shadows_of_polygons_are_those_of_rays.
-// error: what lies behind a surface shades it by less than 3 %; test splatting_surfaces::what_lies_behind_a_surface_does_not_shade_it.
+// error: shadows of polygons are those of rays, 1 % of what is lit; test splatting/polygons::shadows_of_polygons_are_those_of_rays.
+// error: what lies behind a surface shades it by less than 3 %; test splatting/surfaces::what_lies_behind_a_surface_does_not_shade_it.
 // parameter height: metres along the sheets' normal.
 // parameter index: number of the sheet, from 0.
 // parameter climbs: whether the ray's height grows along it.

@@ -15,9 +15,9 @@
 // equation: z' = z + (z − z_l) n / dis(s, l): depth z of a blocker n steps on, l the epipole  (Eq. 3)
 // equation: closing = erosion of the dilation;  minima over the texels 0 .. k − 1 towards the epipole of carried depths
 // error: the direct form is Equation 3, but for less than 1 % of texels that rounding decides;
-// error: test epipolar_dilate/equation::the_direct_form_is_equation_3_everywhere.
+// error: test stylize/epipolar_dilate/equation::the_direct_form_is_equation_3_everywhere.
 // error: the rectified form within resampling of the direct one;
-// error: test epipolar_dilate/equation::the_rectified_form_is_the_direct_one_within_resampling.
+// error: test stylize/epipolar_dilate/equation::the_rectified_form_is_the_direct_one_within_resampling.
 // parameter far_depth: depth of an empty texel: 1 forward, 0 reversed.
 // parameter stored: depth of the shadow map, 0..1; not finite counts as empty.
 // parameter depth: facing depth, or EMPTY.

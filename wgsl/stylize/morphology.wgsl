@@ -8,7 +8,7 @@
 // note: cutting them is the same as repeating the texel at the border: positions are clamped.
 // note: The disc of radius r is the set of texels with dx^2 + dy^2 <= r^2.
 // equation: half chord at row y of a disc of radius r: w = ⌊√(r² − y²)⌋;  table of level l: extremum over 2^l texels
-// error: exact, every operator equals its reference; test morphology::every_operator_equals_its_reference_everywhere.
+// error: exact, every operator equals its reference; test stylize/morphology::every_operator_equals_its_reference_everywhere.
 // parameter row: texels from the middle, up to `radius`.
 // parameter level: 0..6.
 

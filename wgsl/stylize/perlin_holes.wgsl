@@ -12,8 +12,8 @@
 // note: its own leaves the share of holes as it is, since the displacement then knows nothing of N, and does not tear holes.
 // equation: N(q) = Σ_(i<o) p^i / max(1, o − i − 1) P(2^i q + o_i);  noise = ½ + N / (√2 Σ weights);  hole ⇔ noise < h
 // equation: displaced: q' = q + a v (cos(turn v), sin(turn v)), v = √2 P of the travelling noise
-// error: noise within 5e-5, moving 1e-4; test perlin_holes::noise_and_masks_are_those_of_the_reference.
-// error: area within 0.02, size within 15 % of what was asked for; test perlin_holes::holes_have_the_area_and_size_that_were_asked_for.
+// error: noise within 5e-5, moving 1e-4; test stylize/perlin_holes::noise_and_masks_are_those_of_the_reference.
+// error: area within 0.02, size within 15 % of what was asked for; test stylize/perlin_holes::holes_have_the_area_and_size_that_were_asked_for.
 // parameter seed: any bits.
 // parameter position: cells of the first octave.
 // parameter uv: place in the map, 0..1.

@@ -10,7 +10,7 @@
 // note: cells the whole sums. The correction is 0 in fixed cells. All levels lie in one buffer, one after the other.
 // equation: Δu = 0, u given in discs;  relaxed: u ← u + ω ((Σ w_j u_j + f) / Σ w_j − u);  residual: f + Σ w_j u_j − u Σ w_j
 // equation: prolonged: (9 own + 3 beside + 3 below + diagonal) / 16
-// error: within 1/255 of the converged solution; test transfer/diffusion::diffusion_is_within_a_step_of_the_converged_solution.
+// error: within 1/255 of the converged solution; test stylize/transfer/diffusion::diffusion_is_within_a_step_of_the_converged_solution.
 // parameter texel: column and row.
 // parameter size: texels a side, from 1 up.
 // parameter position: 0..1 in x and y.

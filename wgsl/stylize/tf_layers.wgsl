@@ -5,7 +5,7 @@
 // note: All colours are linear and premultiplied. Multiplying is that of W3C: where nothing lies below, the layer shows.
 // equation: over: c + b (1 − α_c);  multiply: c (1 − α_b) + b (1 − α_c) + c b;  add: c + b, all premultiplied
 // equation: share = <x − from, to − from> / |to − from|², cut to 0..1
-// error: within 4e-3, as half floats hold it; test transfer/layers::layers_are_blended_as_the_equations_say.
+// error: within 4e-3, as half floats hold it; test stylize/transfer/layers::layers_are_blended_as_the_equations_say.
 // parameter position: 0..1 in x and y.
 // parameter from_position, to_position: 0..1 in x and y.
 // parameter picture: premultiplied linear RGBA.

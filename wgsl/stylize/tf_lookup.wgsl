@@ -9,8 +9,8 @@
 // equation: properties: V̄;  s / limit;  θ / π;  fract(atan2(y, x) / 2π);  s̄ / limit, cut to 0..1
 // equation: L' = L (1 − strength α) + strength brightness c tint;  tint: 4π p, E p or L by mode
 // error: properties: visibility within 1e-6, depth 1e-4, angles 5e-4 and 1e-4;
-// error: test transfer/restyling::rays_lie_where_their_properties_say.
-// error: restyled light within 2e-3; test transfer/restyling::every_mode_makes_of_a_colour_what_it_should.
+// error: test stylize/transfer/restyling::rays_lie_where_their_properties_say.
+// error: restyled light within 2e-3; test stylize/transfer/restyling::every_mode_makes_of_a_colour_what_it_should.
 // parameter property: MEAN_VISIBILITY to VISIBLE_DEPTH.
 // parameter ndc: normalised device coordinates, -1..1.
 // parameter depth_limit: metres, above 0.

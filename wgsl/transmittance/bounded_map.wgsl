@@ -7,7 +7,7 @@
 // note: is therefore the mean of four transmittances.
 // equation: x' = (x − x₀) / (x₁ − x₀) within the occupied interval x₀..x₁ of a texel;  T = Σ corners share exp(−Σ_j c_j B_j(x'))
 // error: within 1e-5 of its reference, and of a fifth of the plain map's error;
-// error: test transmittance_forms::intervals_are_not_mixed_but_transmittances_are.
+// error: test transmittance/forms::intervals_are_not_mixed_but_transmittances_are.
 // parameter depth: 0..1 over the range of the map.
 // parameter interval: least and greatest occupied depth, 0..1.
 // parameter extent: half a length, 0..1 over the range of the map.

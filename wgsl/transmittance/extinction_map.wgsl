@@ -15,8 +15,8 @@
 // note: of extinction from 0 up, and T falls everywhere, at 1.2 to 2.5 times the mean error; both ends are as they were.
 // equation: c_j d = Σ_i τ_i mean of b_j over stretch i;  τ(x) = Σ_j (c_j d) B_j(x);  T(x) = exp(−max(τ(x), 0))
 // error: slabs and boxes within 1e-4 of the truncated series, half floats 1e-3;
-// error: test transmittance::slabs_and_boxes_are_their_truncated_series_in_closed_form.
-// error: an even slab over the range within 3e-6; test transmittance::an_even_slab_over_the_range_is_exact.
+// error: test transmittance/volumes::slabs_and_boxes_are_their_truncated_series_in_closed_form.
+// error: an even slab over the range within 3e-6; test transmittance/volumes::an_even_slab_over_the_range_is_exact.
 // parameter group: number of four coefficients, from 0.
 // parameter half: half the length of the stretch, 0..1 over the range.
 // parameter map: layers of four coefficients, rgba32float or rgba16float.

@@ -8,7 +8,7 @@
 // note: A step of the march has even extinction, and T in it is taken for its mean, which is exact.
 // equation: t_j = ∫₀¹ T(x) b_j(x) dx;  T(x) = Σ_j t_j b_j(x), cut to 0..1;  mean of exp(−x) over 0..τ = (1 − exp(−τ)) / τ
 // error: within the budgets of its form against the reference;
-// error: test transmittance_forms::every_form_is_its_reference_and_reaches_what_it_can.
+// error: test transmittance/forms::every_form_is_its_reference_and_reaches_what_it_can.
 // parameter map: layers of four coefficients.
 // parameter optical_depth: from 0 up.
 // parameter depth: 0..1 over the range.

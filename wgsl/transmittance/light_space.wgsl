@@ -8,7 +8,7 @@
 // note: that stands askew to the light; particles want them across the light. At every depth the medium before the range is not known, and counts as clear.
 // equation: map depth = clip depth, or 1 − clip depth where it is reversed;  d = |world_from_clip · (0, 0, 1, 0)| metres
 // error: transmittance is the same within 1e-4 whichever way depth runs;
-// error: test transmittance::depth_may_run_either_way_and_places_outside_are_lit.
+// error: test transmittance/volumes::depth_may_run_either_way_and_places_outside_are_lit.
 // parameter clip_depth: 0..1 in the light's clip space, or in the map.
 // parameter size: columns and rows of the map, texels.
 // parameter point: metres in the world.

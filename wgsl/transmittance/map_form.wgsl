@@ -7,7 +7,7 @@
 // equation: layer_g += τ φ_g(middle, half), φ_g the group g of the chosen form for a stretch of optical depth 1
 // equation: walk: φ_g = spread_g(step / 2) · basis_g(middle), middles led on by rotation
 // error: maps from particles and volumes within the budgets of their forms;
-// error: test transmittance_particles::balls_are_the_series_of_their_chords.
+// error: test transmittance/particles::balls_are_the_series_of_their_chords.
 // parameter middle: depth of the middle of a stretch, 0..1 over the range or the interval.
 // parameter half: half its length, the same.
 // parameter step: its length, the same.

@@ -4,7 +4,7 @@
 // source: none; rgba32float is not filterable in core WebGPU, so that means are taken by loads but with FILTERED.
 // note: A mean with what is not finite, as an overflown half float, is 0.
 // equation: value = Σ corners (share x)(share y) texel; with FILTERED one read by the texture unit
-// error: without FILTERED to rounding, with it within 1e-3; test transmittance_forms::half_floats_are_filtered_as_single_ones_are_mixed.
+// error: without FILTERED to rounding, with it within 1e-3; test transmittance/forms::half_floats_are_filtered_as_single_ones_are_mixed.
 // parameter size: columns and rows of the map, from 1 up.
 // parameter texel: column and row, inside the map.
 // parameter value: any, NaN and infinities too.

@@ -8,8 +8,8 @@
 // note: background, 1 where there is no medium. Over a picture they are radiance + alpha * background.
 // equation: L = albedo p(cos) L_e Σ_i T_eye,i (1 − exp(−τ_i)) T_light,i;  T_eye,i+1 = T_eye,i exp(−τ_i)
 // error: radiance within 1.5 % rms of the f64 march, transmittance 1 %;
-// error: test transmittance_pictures::surfaces_cut_the_medium_before_any_camera.
-// error: against the same march without a map 1 %, 0.2 %; test transmittance_pictures::a_cloud_through_maps_is_the_march_in_f64.
+// error: test transmittance/pictures::surfaces_cut_the_medium_before_any_camera.
+// error: against the same march without a map 1 %, 0.2 %; test transmittance/pictures::a_cloud_through_maps_is_the_march_in_f64.
 // parameter value: of the volume's texture, any; not finite or negative is no medium.
 // parameter cosine: -1..1.
 // parameter light_radiance: linear RGB, from 0 up.

@@ -11,7 +11,7 @@
 // note: it rings there, which extinction_map, an even series, does not.
 // equation: functions 1, √2 cos(2πk x), √2 sin(2πk x);  τ(x) = Σ_j c_j ∫₀ˣ;  T(x) = exp(−max(τ(x), 0))
 // error: within the budgets of its form against the reference;
-// error: test transmittance_forms::every_form_is_its_reference_and_reaches_what_it_can.
+// error: test transmittance/forms::every_form_is_its_reference_and_reaches_what_it_can.
 // parameter group: number of four coefficients, from 0.
 // parameter half: half the length of a stretch, 0..0.5 over the range.
 // parameter map: layers of four coefficients.

@@ -8,8 +8,8 @@
 // note: sum over texels is then from 9 % below to 11 % above that of the ball, wherever it lies between them.
 // note: What lies before or behind the range of the map is cut off. Along a ray a ball has at most GREATEST_DEPTH.
 // equation: chord half = √(R² − r²);  τ = 2 R σ √(1 − r² / R²), thinned by (R / R')² where it is widened to R'
-// error: balls within the budget of the map's precision; test transmittance_particles::balls_are_the_series_of_their_chords.
-// error: the sum of a small ball from 10 % below to 12 % above; test transmittance_particles::small_balls_keep_their_extinction.
+// error: balls within the budget of the map's precision; test transmittance/particles::balls_are_the_series_of_their_chords.
+// error: the sum of a small ball from 10 % below to 12 % above; test transmittance/particles::small_balls_keep_their_extinction.
 // parameter size: columns and rows of the map, texels.
 // parameter texels: position of a light ray in the map, texel i at i + 0.5.
 // parameter point: metres in the world.

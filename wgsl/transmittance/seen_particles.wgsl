@@ -6,7 +6,7 @@
 // note: surface. A ball with a radius of less than LEAST_RADIUS pixels is widened to it and thinned, as in the map.
 // equation: τ(t) = τ_ball √(1 − r² / R²) × share of the chord between the eye and t
 // error: transmittance at the middles 0.6 % in the mean, blended radiance 3 % rms;
-// error: test transmittance_particle_pictures::particles_are_blended_as_in_f64_in_any_order.
+// error: test transmittance/particle_pictures::particles_are_blended_as_in_f64_in_any_order.
 // parameter point: metres in the world.
 // parameter distance: metres along the ray, from 0 up.
 

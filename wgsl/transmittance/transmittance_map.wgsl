@@ -7,8 +7,8 @@
 // note: texels, but for BOUNDED, where four transmittances are mixed.
 // note: Outside of the map to the sides transmittance is 1; before it too, and behind it what it is at the far side.
 // equation: T(place, depth) of the form that was built: extinction, opacity, function map or moments; 1 outside and before the map
-// error: every form within its budget, mean and greatest; test transmittance_forms::every_form_is_its_reference_and_reaches_what_it_can.
-// error: places outside are lit; test transmittance::depth_may_run_either_way_and_places_outside_are_lit.
+// error: every form within its budget, mean and greatest; test transmittance/forms::every_form_is_its_reference_and_reaches_what_it_can.
+// error: places outside are lit; test transmittance/volumes::depth_may_run_either_way_and_places_outside_are_lit.
 // parameter depth: 0..1 over the range.
 // definition COEFFICIENTS: numbers a texel, four a layer: 4, 8 or 16, of the moments 8; 4 where it is not given.
 // definition FUNCTION: transmittance function map; without this and the next four an extinction map of cosines.

@@ -16,9 +16,9 @@
 // note: Two thin sheets are exact by either kind. An even medium is not: both are for media of few dense parts.
 // equation: b_j = Σ τ_i mean of T_j(2x − 1), j = 0..6;  T(x) = exp(−b₀ (share before x + OVERESTIMATION weight at x))
 // equation: trigonometric: b_j = Σ τ_i mean of exp(i j φ), φ = x (2π − GAP), j = 0..2;  nodes: roots of K(r, s) on the circle
-// error: two thin sheets within 5e-3 by either kind; test transmittance_forms::two_thin_sheets_are_exact_with_moments_alone.
+// error: two thin sheets within 5e-3 by either kind; test transmittance/forms::two_thin_sheets_are_exact_with_moments_alone.
 // error: within the budgets of its form against the reference;
-// error: test transmittance_forms::every_form_is_its_reference_and_reaches_what_it_can.
+// error: test transmittance/forms::every_form_is_its_reference_and_reaches_what_it_can.
 // parameter middle: depth of the middle of a stretch, 0..1.
 // parameter half: half its length, 0..0.5.
 // parameter layer: 0 or 1.

@@ -3,9 +3,9 @@
 
 /// Every function of the core modules, each with a test here or in one of `core_*.rs`.
 const COVERED: [(&str, &[&str]); 21] = [
-    // In tests/tests/painterly.rs, by what rays find and see.
+    // In tests/tests/painterly/iso_raycast.rs, by what rays find and see.
     ("transfer_function", &["classified"]),
-    // In tests/tests/core_cosine.rs.
+    // In tests/tests/core/cosine.rs.
     (
         "cosine_basis",
         &[
@@ -20,7 +20,7 @@ const COVERED: [(&str, &[&str]); 21] = [
             "fejer_window",
         ],
     ),
-    // In tests/tests/moments/bounds.rs, the bounds as a whole and the roots alone.
+    // In tests/tests/scattering/moments/bounds.rs, the bounds as a whole and the roots alone.
     (
         "moment_bounds",
         &[
@@ -94,12 +94,12 @@ const COVERED: [(&str, &[&str]); 21] = [
     ("ray_depth", &["ray_depth", "distance_on_ray", "depth_on_ray"]),
     ("resolve_depth", &["averaging_extinction", "distance_of_transmittance"]),
     ("picture", &["picture_corner"]),
-    // In tests/tests/core_bricks.rs; runs of samples as wholes in tests/tests/transmittance_bricks.rs.
+    // In tests/tests/core/bricks.rs; runs of samples as wholes in tests/tests/transmittance/bricks.rs.
     ("bricks", &["brick_count", "brick_at", "samples_alike", "run_of_samples"]),
     ("volume", &["segment_in_box", "march_steps", "voxel_at", "metres_across"]),
-    // In tests/tests/core_sort.rs.
+    // In tests/tests/core/sort.rs.
     ("sort", &["ascending_key", "key_digit", "one_counted", "counted_together", "counted"]),
-    // In tests/tests/core_noise.rs.
+    // In tests/tests/core/noise.rs.
     (
         "noise",
         &[

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The functions of the core modules, evaluated on the GPU and held to their f64 references within a
-//! stated error budget: which test holds which; values and colours, jitter; and scans of any length.
-//! `core_camera.rs`, `core_light.rs` and `core_fourier.rs` hold the others.
+//! The functions of the core modules, evaluated on the GPU and held to their f64 references within a stated error budget, and
+//! passes of `core` that sort and find bricks.
 //!
-//! `--nocapture` prints the measured errors next to the budgets.
+//! `--nocapture` prints what was measured.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../support/gpu.rs"]
@@ -11,9 +10,16 @@ mod gpu;
 #[path = "../support/probing.rs"]
 mod probing;
 
+mod bricks;
+mod camera;
+mod cosine;
 mod coverage;
 mod directions;
+mod fourier;
 mod jitter;
+mod light;
+mod noise;
 mod scans;
+mod sort;
 mod textures;
 mod values;

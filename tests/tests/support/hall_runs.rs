@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Runs of `airlight scattering` in the hall, for several test binaries.
+//! Runs of `airlight scattering` in the hall, for several files.
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::command::{files, succeeds};

@@ -2,9 +2,7 @@
 //! Files of views for `airlight inverse`, and volumes with known properties.
 #![allow(dead_code, clippy::unwrap_used)]
 
-#[path = "npy.rs"]
-pub mod npy;
-
+use crate::npy;
 use std::fmt::Write;
 use std::path::Path;
 

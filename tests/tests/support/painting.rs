@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Runs of `airlight painterly` on the lumps, for several test binaries.
+//! Runs of `airlight painterly` on the lumps, for several files.
 #![allow(dead_code, clippy::unwrap_used)]
 
 use crate::command::{Ended, files, succeeds, words};
