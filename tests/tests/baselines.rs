@@ -160,7 +160,6 @@ fn assert_exact(name: &str, case: &Case) {
 
 #[test]
 fn minmax_mipmaps_are_exact_whatever_the_width() {
-    let _turn = gpu::turn();
     assert_exact("foliage 512", &Case::new("foliage", [512, 512]));
     assert_exact("foliage 1024", &Case::new("foliage", [1024, 300]));
     assert_exact("terrain 700", &Case::new("terrain", [700, 257]));
@@ -171,7 +170,6 @@ fn minmax_mipmaps_are_exact_whatever_the_width() {
 
 #[test]
 fn minmax_mipmaps_are_exact_over_random_rows() {
-    let _turn = gpu::turn();
     let mut random = Random(3);
     for (width, levels) in [(1024, 0), (777, 0), (513, 40), (300, 1000), (130, 3)] {
         let case = Case::new("torus", [width, 128]);
@@ -192,7 +190,6 @@ fn minmax_mipmaps_are_exact_over_random_rows() {
 
 #[test]
 fn depths_that_are_the_rays_own_are_lit() {
-    let _turn = gpu::turn();
     // Every ray's depth is clamped to 0.05 .. 0.95; a map at one of these bounds, up to a step of f32, decides alike
     // for all rays: codes of 7 and of 15 bits do not tell the three apart.
     let case = Case::new("plane", [200, 64]);
@@ -211,7 +208,6 @@ fn depths_that_are_the_rays_own_are_lit() {
 
 #[test]
 fn variance_shadow_maps_are_those_of_their_equations() {
-    let _turn = gpu::turn();
     let mut random = Random(5);
     // Rows of one depth each, where the least variance decides; noise about one depth a row.
     let mut rows = |spread: f64| {
@@ -265,7 +261,6 @@ fn variance_shadow_maps_are_those_of_their_equations() {
 
 #[test]
 fn fourier_bases_are_nearer_to_the_truth_than_variance() {
-    let _turn = gpu::turn();
     for name in ["foliage", "plane"] {
         let case = Case::new(name, [512, 512]);
         let exact: Vec<f64> = case.statistics().iter().map(|pixel| pixel.exact).collect();

@@ -72,7 +72,6 @@ fn bound<'a>(case: &'a Value, bindings: &'a Value, name: &str) -> &'a Value {
 
 #[test]
 fn a_dispatch_is_recorded_with_its_contents() {
-    let _turn = gpu::turn();
     let folder = tempfile::tempdir().unwrap();
     let (gpu, recorder) = recorded(folder.path());
     let given = radiance(&gpu);
@@ -105,7 +104,6 @@ fn a_dispatch_is_recorded_with_its_contents() {
 
 #[test]
 fn some_runs_of_a_pass_are_kept() {
-    let _turn = gpu::turn();
     let folder = tempfile::tempdir().unwrap();
     let (gpu, _) = recorded(folder.path());
     tonemap(&gpu, &radiance(&gpu), 6);
@@ -115,7 +113,6 @@ fn some_runs_of_a_pass_are_kept() {
 
 #[test]
 fn without_a_recorder_nothing_is_written() {
-    let _turn = gpu::turn();
     let folder = tempfile::tempdir().unwrap();
     let (recorded, _) = recorded(folder.path());
     tonemap(gpu(), &radiance(gpu()), 1);
@@ -143,7 +140,6 @@ fn grow(@builtin(global_invocation_id) id: vec3<u32>) {
 
 #[test]
 fn an_indirect_dispatch_and_a_picture_are_recorded() {
-    let _turn = gpu::turn();
     let folder = tempfile::tempdir().unwrap();
     let (gpu, _) = recorded(folder.path());
     let shaders = Shaders::from_library(Library::builtin().with_pass("core", "grown", PASS));

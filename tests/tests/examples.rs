@@ -88,7 +88,6 @@ fn picture_of_the_host() -> Picture {
 
 #[test]
 fn plain_wgpu_draws_what_the_host_draws() {
-    let _turn = gpu::turn();
     let picture = picture_of_the_example();
     let (structure, mean) = picture.similarity(&picture_of_the_host());
     assert!(

@@ -45,7 +45,6 @@ const MAP: [u32; 2] = [48, 32];
 const SHADOW: [u32; 2] = [48, 48];
 
 fn check(scene_name: &str, scene: &TestScene) {
-    let _turn = gpu::turn();
     let stage = scene.stage(PICTURE, SHADOW);
     let inputs = stage.inputs();
     // Half floats hold visibility and basis to 5e-4, 8 bits to 2e-3; a depth next to an edge of the map
@@ -122,7 +121,6 @@ fn stylized(stage: &Stage, holes: &[HoleParameters], operators: &[ShadowOperator
 
 #[test]
 fn torus_stylized() {
-    let _turn = gpu::turn();
     let scene = gpu::torus_over_plane();
     let stage = scene.stage(PICTURE, SHADOW);
     let name = |what: &str| format!("torus_stylized_{what}");
@@ -196,7 +194,6 @@ fn assert_map(name: &str, map: &TransmittanceMap, tolerance: Tolerance) {
 
 #[test]
 fn maps_of_a_volume() {
-    let _turn = gpu::turn();
     let volume = cloud([20, 12, 16], 9);
     let towards = Vec3::new(0.5, 0.8, 0.3);
     let light = Light::directional_leaning(towards, Vec3::ONE, volume.occupied_points()).unwrap();
@@ -224,7 +221,6 @@ fn maps_of_a_volume() {
 
 #[test]
 fn maps_of_particles() {
-    let _turn = gpu::turn();
     let particles = burst(60, 5);
     let light =
         Light::directional_around_balls(Vec3::new(0.5, 0.8, 0.3), Vec3::ONE, particles.balls()).unwrap();
@@ -255,7 +251,6 @@ fn maps_of_particles() {
 
 #[test]
 fn painterly_torus() {
-    let _turn = gpu::turn();
     let table = [[0.2, 0.3, 0.8, 0.0], [0.9, 0.5, 0.2, 1.0]];
     let exhibit = painted::Exhibit::new(torus_field([32, 28, 24], 0.55, 0.25), Some([0.0, 1.0]), &table);
     let source = [40, 30];
@@ -303,7 +298,6 @@ fn painterly_torus() {
 
 #[test]
 fn sheets_of_a_cloud_with_a_ball() {
-    let _turn = gpu::turn();
     let volume = sheet_scene::small_cloud();
     let volumes = [sheets::splats(&volume)];
     let ball = sphere(0.4, 32, 16).transformed(glam::Mat4::from_translation(Vec3::new(0.5, 0.5, 0.2)));

@@ -27,7 +27,6 @@ fn sky(direction: Vec3) -> Vec3 {
 
 #[test]
 fn a_ball_and_a_block_under_a_sky() {
-    let _turn = gpu::turn();
     let mut mesh = plane(Vec2::splat(6.0), 1);
     mesh.append(&sphere(0.5, 32, 16).transformed(Mat4::from_translation(Vec3::new(-0.4, 0.5, 0.0))));
     mesh.append(&cuboid(Vec3::splat(0.8)).transformed(Mat4::from_translation(Vec3::new(0.6, 0.4, -0.3))));

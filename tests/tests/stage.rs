@@ -218,7 +218,6 @@ fn white(_: &Stage, _: linear::Vec3) -> [f64; 3] {
 
 #[test]
 fn every_light_falls_on_surfaces_in_every_camera() {
-    let _turn = gpu::turn();
     let mesh = mesh();
     for (name, view) in views() {
         for (kind, light) in [("sun", SUN), ("spot", SPOT), ("lamp", LAMP)] {
@@ -231,7 +230,6 @@ fn every_light_falls_on_surfaces_in_every_camera() {
 
 #[test]
 fn textures_colour_the_light_over_the_whole_map() {
-    let _turn = gpu::turn();
     let mesh = mesh();
     // A ramp is its own linear interpolation.
     let image = LightImage::from_function([32, 16], |uv| Vec3::new(uv.x, uv.y, 1.0 - 0.5 * uv.x));
@@ -287,7 +285,6 @@ fn samples(stage: &Stage) -> Vec<f32> {
 
 #[test]
 fn several_samples_keep_their_depths_and_resolve_their_colours() {
-    let _turn = gpu::turn();
     let mesh = mesh();
     for (name, view) in views() {
         let single = stage(&setting(&mesh, view, SPOT));
@@ -348,7 +345,6 @@ fn several_samples_keep_their_depths_and_resolve_their_colours() {
 
 #[test]
 fn what_cannot_be_is_refused_and_said() {
-    let _turn = gpu::turn();
     let mesh = mesh();
     let good = setting(&mesh, perspective(DepthRange::Forward, FAR), SUN);
     let image = LightImage::from_function([2, 2], |_| Vec3::ONE);

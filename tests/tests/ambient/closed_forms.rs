@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bent normals and cones of surfaces in closed form, by every sampler.
 
-use crate::gpu;
 use crate::seen::{SeenImages, cameras, many, seen, sharp};
 use airlight::ambient::Sampling;
 use airlight_tests::linear::Vec3;
@@ -31,7 +30,6 @@ fn angles(length: f64) -> [f64; 2] {
 
 #[test]
 fn an_open_plane_has_its_normal_and_the_whole_hemisphere() {
-    let _turn = gpu::turn();
     let surface = |origin, direction| floor(origin, direction).map(|way| (way, Vec3::new(0.0, 1.0, 0.0)));
     for eye in [Vec3::new(0.0, 4.0, 0.1), Vec3::new(1.5, 1.0, 3.0)] {
         for (name, camera) in cameras(eye, Vec3::default(), 1.0) {
@@ -49,7 +47,6 @@ fn an_open_plane_has_its_normal_and_the_whole_hemisphere() {
 
 #[test]
 fn a_wall_hides_half_of_the_hemisphere() {
-    let _turn = gpu::turn();
     // The wall is the plane x = 0, seen from x > 0.
     let surface = |origin: Vec3, direction: Vec3| {
         let wall = -origin.x / direction.x;
@@ -74,7 +71,6 @@ fn a_wall_hides_half_of_the_hemisphere() {
 
 #[test]
 fn a_corner_leaves_an_eighth_of_the_sphere() {
-    let _turn = gpu::turn();
     let surface = |origin: Vec3, direction: Vec3| {
         let axes = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
         let met = axes.map(|axis| {
@@ -100,7 +96,6 @@ fn a_corner_leaves_an_eighth_of_the_sphere() {
 
 #[test]
 fn the_bottom_of_a_hemispherical_pit_sees_a_cone() {
-    let _turn = gpu::turn();
     // A hemisphere of radius 1 below y = 0; from its bottom the rim is 45 degrees off the vertical.
     let surface = |origin: Vec3, direction: Vec3| {
         let up = Vec3::new(0.0, 1.0, 0.0);

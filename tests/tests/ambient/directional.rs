@@ -75,7 +75,6 @@ fn lit_by_linear_light(images: &SeenImages, settings: &OcclusionSettings, spread
 
 #[test]
 fn linear_light_on_what_is_open_has_its_closed_form() {
-    let _turn = gpu::turn();
     // A ball before nothing. With a bias of 1 nothing rises over its tangent planes.
     let ball = |origin: Vec3, direction: Vec3| {
         let along = origin.dot(direction);
@@ -122,7 +121,6 @@ fn linear_light_on_what_is_open_has_its_closed_form() {
 
 #[test]
 fn a_wall_takes_the_light_of_its_half() {
-    let _turn = gpu::turn();
     // The wall is the plane x = 0, seen from x > 0, on the floor y = 0.
     let surface = |origin: Vec3, direction: Vec3| {
         let (wall, floor) = (-origin.x / direction.x, -origin.y / direction.y);
@@ -154,7 +152,6 @@ fn a_wall_takes_the_light_of_its_half() {
 /// both; noise is the difference to what a method becomes with very many directions.
 #[test]
 fn cones_of_8_directions_are_no_worse_than_16_look_ups() {
-    let _turn = gpu::turn();
     let mut noises = Vec::new();
     for scene in ambient_scenes().unwrap() {
         let (name, standing) = (scene.name, Standing::new(&scene, [112, 84]));

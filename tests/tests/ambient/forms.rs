@@ -32,7 +32,6 @@ fn settings() -> OcclusionSettings {
 
 #[test]
 fn openness_alone_is_the_openness_beside_bent_normals() {
-    let _turn = gpu::turn();
     let images = yard(0.1);
     for sampling in ALL {
         for blurring in [Blurring::Off, Blurring::Difference] {
@@ -54,7 +53,6 @@ fn openness_alone_is_the_openness_beside_bent_normals() {
 
 #[test]
 fn a_blur_of_differences_keeps_bumps_and_a_plain_one_loses_them() {
-    let _turn = gpu::turn();
     // Bumps are only in the normals: rays see a flat floor, so an open place's bent normal is its bump's normal.
     let images = yard(0.25);
     let degrees = |blurring| {
@@ -75,7 +73,6 @@ fn a_blur_of_differences_keeps_bumps_and_a_plain_one_loses_them() {
 
 #[test]
 fn half_the_resolution_is_nearly_the_whole() {
-    let _turn = gpu::turn();
     let images = yard(0.0);
     let form = BentForm { blurring: Blurring::Difference, ..sharp(Sampling::Hemisphere) };
     let whole = images.bent(form, &settings());
@@ -96,7 +93,6 @@ fn half_the_resolution_is_nearly_the_whole() {
 
 #[test]
 fn half_the_resolution_keeps_to_its_side_of_an_edge() {
-    let _turn = gpu::turn();
     // A block on a floor, from above: nothing hides its top, and it hides much of the floor beside it.
     let block = |x: f64, _: f64| Some((if x < -0.1 { 0.6 } else { 0.0 }, Vec3::new(0.0, 1.0, 0.0)));
     let images = from_above([40, 40], 1.0, true, &block);
@@ -121,7 +117,6 @@ fn half_the_resolution_keeps_to_its_side_of_an_edge() {
 
 #[test]
 fn noise_of_any_size_leaves_finite_parts_of_the_hemisphere() {
-    let _turn = gpu::turn();
     let mut random = Random(41);
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3.0, 1e30, -1e30, 0.0, 1.0];
     let mut any = |low: f64| {
@@ -175,7 +170,6 @@ fn noise_of_any_size_leaves_finite_parts_of_the_hemisphere() {
 
 #[test]
 fn broken_depths_and_normals_leave_nothing_that_is_not_finite() {
-    let _turn = gpu::turn();
     let images = yard(0.2);
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3.0, 1e30, 0.0];
     let mut depths = images.depths.clone();
@@ -210,7 +204,6 @@ fn broken_depths_and_normals_leave_nothing_that_is_not_finite() {
 
 #[test]
 fn impossible_settings_are_refused() {
-    let _turn = gpu::turn();
     let images = yard(0.0);
     let passes = seen::passes(sharp(Sampling::Hemisphere));
     let possible = settings();

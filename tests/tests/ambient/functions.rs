@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Functions of bent normals and cones, one by one, against integrals and counts in f64.
 
-use crate::gpu::{self, Probe, Random};
+use crate::gpu::{Probe, Random};
 use crate::probing::{f, hold, triple, worst};
 use airlight_tests::linear::Vec3;
 use std::f64::consts::FRAC_PI_2;
 
 #[test]
 fn cones_have_the_angles_of_their_mean_lengths() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::bent_cone::{cone_angle, cone_angle_exact}",
         body: "output(0u, cone_angle(input(0u))); output(1u, cone_angle_exact(input(0u)));",
@@ -31,7 +30,6 @@ fn cones_have_the_angles_of_their_mean_lengths() {
 
 #[test]
 fn outliers_are_visible_to_directions_and_unknown_to_openness() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::bent_cone::{bent_nothing, bent_add, bent_add_all, openness, mean_direction, irradiance_share, scaled_direction}",
         body: "var sum = bent_nothing();
@@ -80,7 +78,6 @@ fn outliers_are_visible_to_directions_and_unknown_to_openness() {
 
 #[test]
 fn slices_above_a_horizon_are_their_integrals() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::occluders::open_slice",
         body: "let slice = open_slice(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(0.6, 0.0, 0.8), input(0u));
@@ -109,7 +106,6 @@ fn slices_above_a_horizon_are_their_integrals() {
 
 #[test]
 fn sectors_are_those_whose_middles_are_between() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::occluders::sector_bits",
         body: "let bits = sector_bits(input(0u), input(1u));
@@ -134,7 +130,6 @@ fn sectors_are_those_whose_middles_are_between() {
 
 #[test]
 fn patterns_fill_the_hemisphere_and_frames_move_them() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::sample_pattern::{sample_shift, sample_place, hemisphere_direction}",
         body: "let shift = sample_shift(vec2<u32>(u32(input(0u)), u32(input(1u))), 8u, u32(input(2u)));
@@ -174,7 +169,6 @@ fn patterns_fill_the_hemisphere_and_frames_move_them() {
 
 #[test]
 fn neighbours_count_by_distance_from_the_plane_and_by_normal() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::bent_blur::{BentBlur, edge_weight}
                fn three(k: u32) -> vec3<f32> { return vec3<f32>(input(k), input(k + 1u), input(k + 2u)); }",

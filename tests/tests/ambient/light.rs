@@ -4,7 +4,7 @@
 use crate::cones::{
     Cones, LAYERS, cones_of, layer_angle, lit, look_up, real_map, reference_map, texel_direction,
 };
-use crate::gpu::{Random, gpu, shaders, texture, turn, vector};
+use crate::gpu::{Random, gpu, shaders, texture, vector};
 use airlight::ambient::{ConeLight, ConeLightError, ConeLightForm};
 use airlight::data::Environment;
 use airlight_tests::linear::Vec3 as Point;
@@ -25,7 +25,6 @@ fn each(cones: &Cones, mut check: impl FnMut(usize, Point, Rgb)) {
 
 #[test]
 fn constant_light_is_the_same_in_all_cones() {
-    let _turn = turn();
     let color = Vec3::new(3.0, 0.25, 700.0);
     for size in [[2, 1], [50, 25], [256, 128], [600, 300]] {
         let map = Environment::from_function(size, |_| color).unwrap();
@@ -45,7 +44,6 @@ fn constant_light_is_the_same_in_all_cones() {
 /// The mean of the cosine under the weight cos over the cap of half angle α is (2/3) (1 − cos³ α) / sin² α.
 #[test]
 fn light_linear_in_the_direction_has_its_closed_form() {
-    let _turn = turn();
     let slopes = [Vec3::new(0.6, 0.0, -0.8), Vec3::new(0.0, 1.0, 0.0), Vec3::new(-0.48, -0.64, 0.6)];
     let map = Environment::from_function([1024, 512], |d| 1.0 + Vec3::from(slopes.map(|slope| slope.dot(d))));
     let map = map.unwrap();
@@ -66,7 +64,6 @@ fn light_linear_in_the_direction_has_its_closed_form() {
 /// The upper half of the sky, as bright as it is high: cones about the zenith, and beyond the horizon.
 #[test]
 fn half_a_sky_has_its_closed_forms() {
-    let _turn = turn();
     let map = Environment::from_function([512, 256], |d| Vec3::splat(d.y.max(0.0))).unwrap();
     let light = lit(&map, 65, false);
     let cones = Cones::of(&light);
@@ -118,7 +115,6 @@ fn errors(pairs: &[(Rgb, Rgb)]) -> [f64; 2] {
 #[test]
 fn real_maps_are_convolved_as_in_f64() {
     const SIDE: usize = 65;
-    let _turn = turn();
     for name in ["forest.exr", "sunset.exr"] {
         let map = real_map(name);
         let reference = reference_map(&map);
@@ -159,7 +155,6 @@ fn noise() -> Environment {
 
 #[test]
 fn nothing_shows_where_the_maps_edges_meet() {
-    let _turn = turn();
     for (side, sampled) in [(8, false), (31, false), (32, true)] {
         let light = lit(&noise(), side, sampled);
         let cones = Cones::of(&light);
@@ -199,7 +194,6 @@ fn nothing_shows_where_the_maps_edges_meet() {
 
 #[test]
 fn look_ups_find_directions_and_angles() {
-    let _turn = turn();
     let map = real_map("forest.exr").texels().to_vec();
     let map = Environment::new([512, 256], map).unwrap();
     let light = lit(&map, 65, false);
@@ -247,7 +241,6 @@ fn look_ups_find_directions_and_angles() {
 /// Between texels too: at any direction.
 #[test]
 fn look_ups_between_texels_stay_near_the_integral() {
-    let _turn = turn();
     let mut random = Random(77);
     let directions: Vec<Point> = (0..200).map(|_| random.direction()).collect();
     for name in ["forest.exr", "sunset.exr"] {
@@ -268,7 +261,6 @@ fn look_ups_between_texels_stay_near_the_integral() {
 
 #[test]
 fn the_geometric_term_is_a_cosine_of_both_normalised() {
-    let _turn = turn();
     let light = lit(&noise(), 8, true);
     let mut random = Random(9);
     let mut records = Vec::new();
@@ -293,7 +285,6 @@ fn the_geometric_term_is_a_cosine_of_both_normalised() {
 
 #[test]
 fn impossible_radiance_counts_as_none() {
-    let _turn = turn();
     let mut random = Random(3);
     let mut values: Vec<f32> = (0..4 * 128 * 64).map(|_| random.unit() as f32).collect();
     let mut repaired = values.clone();
@@ -327,7 +318,6 @@ fn impossible_radiance_counts_as_none() {
 
 #[test]
 fn what_is_impossible_is_said() {
-    let _turn = turn();
     let map = Environment::from_function([8, 4], |_| Vec3::ONE).unwrap();
     for side in [0, 7, 513, u32::MAX] {
         let error =

@@ -2,7 +2,7 @@
 //! What is in the way of a place on a floor, by every sampler, against integrals over the hemisphere in f64: a bar that floats, the
 //! fall-off, the bias, what lies beside the picture and behind surfaces.
 
-use crate::gpu::{self, gpu};
+use crate::gpu::gpu;
 use crate::seen::{SeenImages, cameras, from_above, seen, sharp};
 use airlight::Texture;
 use airlight::ambient::{OcclusionSettings, Sampling, SurfaceImages};
@@ -104,7 +104,6 @@ fn settings(thickness: f64) -> OcclusionSettings {
 
 #[test]
 fn a_marched_direction_is_blocked_within_the_bar_and_unknown_below_it() {
-    let _turn = gpu::turn();
     let open = [0.1, 0.2, 0.6].map(|thickness| {
         let visibility = |direction: Vec3, aside: f64| {
             let Some([first, last]) = under(direction, aside) else { return Some(1.0) };
@@ -126,7 +125,6 @@ fn a_marched_direction_is_blocked_within_the_bar_and_unknown_below_it() {
 
 #[test]
 fn a_plate_further_up_than_its_thickness_leaves_the_normal_and_says_nothing() {
-    let _turn = gpu::turn();
     // One step: all directions of a pixel reach a quarter of the radius, below the plate's underside.
     let reach = 0.45;
     let one_step = |thickness: f64| OcclusionSettings {
@@ -170,7 +168,6 @@ fn a_plate_further_up_than_its_thickness_leaves_the_normal_and_says_nothing() {
 
 #[test]
 fn points_of_a_disc_are_blocked_by_all_that_rises_there() {
-    let _turn = gpu::turn();
     let visibility = |direction: Vec3, aside: f64| {
         let along = 1.5 * direction.x.hypot(direction.z);
         let met = under(direction, aside).is_some_and(|[first, last]| along > first && along < last);
@@ -181,7 +178,6 @@ fn points_of_a_disc_are_blocked_by_all_that_rises_there() {
 
 #[test]
 fn a_horizon_rises_as_the_fall_off_of_what_is_seen_allows() {
-    let _turn = gpu::turn();
     let visibility = |direction: Vec3, aside: f64| {
         let horizon = under(direction, aside).map_or(0.0, |[first, _]| {
             let away = (first + 0.5 * PIXEL).hypot(HIGH);
@@ -214,7 +210,6 @@ fn behind_bits(radius: f64, thickness: f64, tilt: f64) -> impl Fn(Vec3, f64) -> 
 
 #[test]
 fn light_passes_under_a_thin_bar_and_not_under_a_thick_one() {
-    let _turn = gpu::turn();
     let bits = |thickness: f64| OcclusionSettings { samples: 8, steps: 64, ..settings(thickness) };
     let open = [0.1, 0.3, 0.6].map(|thickness| {
         let what = format!("bits, {thickness} m thick");
@@ -231,7 +226,6 @@ fn light_passes_under_a_thin_bar_and_not_under_a_thick_one() {
 
 #[test]
 fn steps_are_taken_at_every_part_of_them() {
-    let _turn = gpu::turn();
     // One step, at the square of a part that differs between pixels: only some of them meet the bar.
     let (radius, thickness) = (2.4, 0.6);
     let one = OcclusionSettings { radius: radius as f32, samples: 12, steps: 1, ..settings(thickness) };
@@ -263,7 +257,6 @@ fn steps_are_taken_at_every_part_of_them() {
 
 #[test]
 fn what_rises_by_less_than_the_bias_hides_nothing() {
-    let _turn = gpu::turn();
     // A valley whose sides rise by 3 degrees each: the sine of one's elevation over the other is at most 0.105.
     let slope = 3.0_f64.to_radians();
     let valley = |x: f64, _: f64| {
@@ -284,7 +277,6 @@ fn what_rises_by_less_than_the_bias_hides_nothing() {
 
 #[test]
 fn what_is_not_in_the_picture_is_free() {
-    let _turn = gpu::turn();
     // Were the first pixel taken for what is outside, its column would hide most of the last pixels' hemispheres.
     let column = |x: f64, z: f64| Some((if x < -0.875 && z < -0.875 { 1.5 } else { 0.0 }, UP));
     let images = from_above([16, 16], 1.0, true, &column);
@@ -300,7 +292,6 @@ fn what_is_not_in_the_picture_is_free() {
 
 #[test]
 fn pixels_without_a_surface_are_open_and_hide_nothing() {
-    let _turn = gpu::turn();
     let surface = |origin: Vec3, direction: Vec3| {
         let way = (-2.0 - origin.y) / direction.y;
         ((origin + direction * way).x > 0.0).then_some((way, UP))
@@ -321,7 +312,6 @@ fn pixels_without_a_surface_are_open_and_hide_nothing() {
 
 #[test]
 fn every_pixel_has_its_own_surface() {
-    let _turn = gpu::turn();
     // Every second pixel has one, at the border as well.
     let size = [9, 7];
     let odd = |x: f64, z: f64| (((x + 4.5).floor() + (z + 3.5).floor()) as i32) % 2 == 1;
@@ -336,7 +326,6 @@ fn every_pixel_has_its_own_surface() {
 
 #[test]
 fn normals_count_by_direction_and_are_towards_the_viewer_where_there_are_none() {
-    let _turn = gpu::turn();
     let images = bar(0.0);
     let settings = OcclusionSettings { samples: 4, ..settings(0.3) };
     for sampling in ALL {
@@ -356,7 +345,6 @@ fn normals_count_by_direction_and_are_towards_the_viewer_where_there_are_none() 
 
 #[test]
 fn patterns_repeat_over_their_square_and_frames_change_them() {
-    let _turn = gpu::turn();
     let images = bar(0.0);
     // Beside the bar all rows see the same, but by other directions.
     let rows = |side: u32, frame: u32, sampling| {

@@ -2,7 +2,7 @@
 //! The blur of bent normals, the halving of depth and normals and the upsampling, each by itself, of pictures whose weights are known:
 //! floors at steps, normals that are half alike, pixels without a surface.
 
-use crate::gpu::{self, Random, gpu, texture};
+use crate::gpu::{Random, gpu, texture};
 use crate::seen::{SeenImages, cameras, from_above, run_alone, seen};
 use airlight::ambient::BentBlur;
 use airlight::core::Camera;
@@ -114,7 +114,6 @@ fn close(what: &str, pixel: usize, found: (Vec3, f64), wanted: (Vec3, f64), tole
 
 #[test]
 fn a_blur_takes_the_mean_of_what_counts_in_its_row_or_column() {
-    let _turn = gpu::turn();
     let mut random = Random(17);
     let size = [19_u32, 11];
     let pixels = 19 * 11;
@@ -187,7 +186,6 @@ fn halved(images: &SeenImages) -> ([u32; 2], Vec<f32>, Vec<f32>) {
 
 #[test]
 fn halving_takes_the_nearest_and_the_farthest_in_turn_on_their_planes() {
-    let _turn = gpu::turn();
     let mut random = Random(23);
     for (size, reversed) in [([14_u32, 10_u32], true), ([13, 9], false), ([1, 1], true)] {
         let pixels = (size[0] * size[1]) as usize;
@@ -249,7 +247,6 @@ fn halving_takes_the_nearest_and_the_farthest_in_turn_on_their_planes() {
 
 #[test]
 fn every_four_halved_pixels_at_steps_have_both_sides() {
-    let _turn = gpu::turn();
     for reversed in [false, true] {
         // Two levels in turn, so that all 2x2 pixels meet both.
         let floor: Vec<Floor> =
@@ -271,7 +268,6 @@ fn every_four_halved_pixels_at_steps_have_both_sides() {
 
 #[test]
 fn halved_planes_are_the_planes() {
-    let _turn = gpu::turn();
     let normal = Vec3::new(0.3, 1.0, -0.2).normalised();
     let plane = |origin: Vec3, direction: Vec3| Some((-origin.dot(normal) / direction.dot(normal), normal));
     for (name, camera) in cameras(Vec3::new(1.0, 2.5, 1.0), Vec3::default(), 1.0) {
@@ -323,7 +319,6 @@ fn four_around(x: usize, y: usize, [width, height]: [usize; 2]) -> [(f64, usize)
 
 #[test]
 fn upsampling_is_bilinear_over_what_is_of_the_same_surface() {
-    let _turn = gpu::turn();
     let mut random = Random(29);
     for size in [[24_u32, 16_u32], [13, 9], [1, 1]] {
         let half = size.map(|side| side.div_ceil(2));
@@ -360,7 +355,6 @@ fn upsampling_is_bilinear_over_what_is_of_the_same_surface() {
 
 #[test]
 fn upsampling_on_a_slanted_plane_is_bilinear() {
-    let _turn = gpu::turn();
     let plane = |x: f64, _: f64| Some((-0.75 * x, TILTED));
     let mut random = Random(31);
     let (images, small) = (from_above([24, 24], 1.0, true, &plane), from_above([12, 12], 1.0, true, &plane));

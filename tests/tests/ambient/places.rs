@@ -2,7 +2,7 @@
 //! Functions of what is seen and of sample sets, one by one: places from depths and back, normals of textures, fall-off and elevation, and
 //! how evenly the directions of one pixel and of a square of pixels are spread.
 
-use crate::gpu::{self, Probe, Random, host_camera};
+use crate::gpu::{Probe, Random, host_camera};
 use crate::probing::{MATRIX_AT, f, hold, triple, worst};
 use crate::seen::cameras;
 use airlight_tests::linear::Vec3;
@@ -30,7 +30,6 @@ fn camera_record(camera: &ReferenceCamera) -> Vec<f32> {
 
 #[test]
 fn places_are_where_rays_through_the_middles_of_pixels_meet_them() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: &format!("{CAMERA}{MATRIX_AT}"),
         body:
@@ -76,7 +75,6 @@ fn places_are_where_rays_through_the_middles_of_pixels_meet_them() {
 
 #[test]
 fn far_and_broken_depths_are_no_surface() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: &format!("{CAMERA}{MATRIX_AT}"),
         body: "let seen = seen_surface(camera(), vec2<i32>(3, 4), input(38u));
@@ -98,7 +96,6 @@ fn far_and_broken_depths_are_no_surface() {
 
 #[test]
 fn normals_are_made_unit_and_replaced_where_there_are_none() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::seen_surface::seen_normal",
         body:
@@ -127,7 +124,6 @@ fn normals_are_made_unit_and_replaced_where_there_are_none() {
 
 #[test]
 fn bent_normals_are_unit_along_the_mean_and_the_normal_where_there_is_none() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::bent_cone::bent_normal",
         body: "let bent = bent_normal(vec3<f32>(input(0u), input(1u), input(2u)), vec3<f32>(0.0, 0.6, 0.8));
@@ -149,7 +145,6 @@ fn bent_normals_are_unit_along_the_mean_and_the_normal_where_there_is_none() {
 
 #[test]
 fn occluders_count_less_with_distance_and_by_their_elevation() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::occluders::{occluder_weight, elevation_sine}",
         body: "output(0u, occluder_weight(input(0u), 2.0));
@@ -179,7 +174,6 @@ fn greatest_gap(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn a_pixel_has_a_direction_in_every_stratum() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::sample_pattern::{sample_shift, sample_place, hemisphere_direction}",
         body: "let shift = sample_shift(vec2<u32>(u32(input(0u)), u32(input(1u))), 8u, u32(input(2u)));
@@ -217,7 +211,6 @@ fn a_pixel_has_a_direction_in_every_stratum() {
 
 #[test]
 fn sets_of_a_square_of_pixels_are_spread() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::ambient::sample_pattern::sample_shift",
         body: "let shift = sample_shift(vec2<u32>(u32(input(0u)), u32(input(1u))), u32(input(3u)), u32(input(2u)));

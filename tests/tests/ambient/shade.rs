@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The pass that lights surfaces, with mean directions that are given, in light whose cones have a closed form.
 
-use crate::gpu::{self, Random, gpu, shaders};
+use crate::gpu::{Random, gpu, shaders};
 use crate::seen::{cameras, seen};
 use airlight::Texture;
 use airlight::ambient::{ConeLight, ConeLightForm, Method, ShadePass};
@@ -54,7 +54,6 @@ fn radiance(pixel: &Pixel, method: Method, printed: bool, channel: usize) -> f64
 
 #[test]
 fn every_method_has_the_radiance_of_its_formula() {
-    let _turn = gpu::turn();
     // A disc that leaves the corners of the picture empty.
     let surface = |origin: Vec3, direction: Vec3| {
         let way = -origin.y / direction.y;

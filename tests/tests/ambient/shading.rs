@@ -2,7 +2,6 @@
 //! Surfaces in the light of real environment maps: occlusion, bent normals and bent cones of the screen against traced pictures.
 
 use crate::cones;
-use crate::gpu;
 use crate::standing::{Standing, error, low_passed};
 use airlight::ambient::Method;
 use airlight::scenes::ambient_scenes;
@@ -11,7 +10,6 @@ const SIZE: [u32; 2] = [112, 84];
 
 #[test]
 fn cones_are_nearer_to_the_truth_than_normals_and_these_than_occlusion() {
-    let _turn = gpu::turn();
     for scene in ambient_scenes().unwrap() {
         let (name, standing) = (scene.name, Standing::new(&scene, SIZE));
         for file in ["forest.exr", "sunset.exr"] {

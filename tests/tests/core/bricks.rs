@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bricks of a volume against brute force, and what their functions and those of volumes do, in closed form.
 
-use crate::gpu::{self, Probe, Random, gpu, shaders};
+use crate::gpu::{Probe, Random, gpu, shaders};
 use airlight::Texture;
 use airlight::core::{Bricks, brick_count};
 
@@ -40,7 +40,6 @@ const SIZES: [[u32; 3]; 5] = [[1, 1, 1], [8, 9, 17], [20, 7, 33], [64, 40, 24], 
 
 #[test]
 fn ranges_hold_all_that_a_trilinear_read_in_a_brick_touches() {
-    let _turn = gpu::turn();
     let bricks = Bricks::new(gpu(), shaders()).unwrap();
     let mut random = Random(3);
     for size in SIZES {
@@ -70,7 +69,6 @@ fn ranges_hold_all_that_a_trilinear_read_in_a_brick_touches() {
 
 #[test]
 fn distances_are_chebyshevs() {
-    let _turn = gpu::turn();
     let bricks = Bricks::new(gpu(), shaders()).unwrap();
     let mut random = Random(5);
     for (size, share) in

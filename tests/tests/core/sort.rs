@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The radix sort against the standard library's stable sort, and the functions that it is made of.
 
-use crate::gpu::{self, Probe, Random, gpu, shaders};
+use crate::gpu::{Probe, Random, gpu, shaders};
 use airlight::Buffer;
 use airlight::core::Sort;
 
@@ -25,7 +25,6 @@ fn sorted(sort: &Sort, keys: &[u32], values: &[u32], count: usize, bits: u32) ->
 
 #[test]
 fn keys_of_any_number_are_sorted_and_equal_ones_keep_their_order() {
-    let _turn = gpu::turn();
     let sort = Sort::new(gpu(), shaders()).unwrap();
     let mut random = Random(17);
     for (count, bits) in
@@ -47,7 +46,6 @@ fn keys_of_any_number_are_sorted_and_equal_ones_keep_their_order() {
 
 #[test]
 fn only_the_bits_asked_for_are_sorted_by() {
-    let _turn = gpu::turn();
     let sort = Sort::new(gpu(), shaders()).unwrap();
     let keys = [0x103, 0x001, 0x302, 0x201, 0x001];
     let [keys, values] = sorted(&sort, &keys, &[0, 1, 2, 3, 4], 5, 8);

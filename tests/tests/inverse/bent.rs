@@ -22,7 +22,6 @@ fn bent_form(solved: Solved, basis: Basis, channels: Channels, step: f32) -> Pro
 
 #[test]
 fn bent_rays_are_those_of_the_reference_and_scatter_with_the_same_weights() {
-    let _turn = gpu::turn();
     let mut random_ = Random(17);
     for solved in [Solved::Emission, Solved::Albedo, Solved::Both, Solved::Extinction] {
         for (basis, channels, transpose, step, surfaces) in [
@@ -96,7 +95,6 @@ fn lengths(
 
 #[test]
 fn an_index_that_rises_evenly_bends_rays_upwards_along_catenaries() {
-    let _turn = gpu::turn();
     let (low, slope) = (1.1_f64, 0.9_f64);
     let index: Vec<f32> = (0..8).map(|i| (low + slope * (f64::from(i) + 0.5) / 8.0) as f32).collect();
     let (columns, rows) = (4_u32, 64_u32);
@@ -138,7 +136,6 @@ fn an_index_that_rises_evenly_bends_rays_upwards_along_catenaries() {
 
 #[test]
 fn surfaces_end_rays_by_the_metres_along_the_bend() {
-    let _turn = gpu::turn();
     let index: Vec<f32> = (0..8).map(|i| 1.1 + 0.9 * (i as f32 + 0.5) / 8.0).collect();
     for (depth, expected) in [(1.5_f32, 0.5_f32), (1.73, 0.73), (1.0, 0.0), (0.0, 0.0), (-1.0, 0.0)] {
         let sum: f32 = lengths(([1, 8, 1], &index), 0.02, [1, 2], [4, 4, 1], depth).iter().sum();
@@ -172,7 +169,6 @@ fn pictures(camera: &Camera, step: f32, index: f32, slices: u32) -> [Vec<f32>; 2
 
 #[test]
 fn an_even_index_makes_the_pictures_of_straight_rays() {
-    let _turn = gpu::turn();
     // The last camera's outer rays run along slices, of which straight rays have one sample each: no reference for bent ones.
     for (name, _, camera) in cameras().into_iter().filter(|(name, ..)| *name != "within, diagonal") {
         for index in [1.0, 1.7] {
@@ -189,7 +185,6 @@ fn an_even_index_makes_the_pictures_of_straight_rays() {
 
 #[test]
 fn rays_that_go_round_and_impossible_indices_end() {
-    let _turn = gpu::turn();
     // Around the middle of n = 1 / r rays keep their distance.
     let side = 48_u32;
     let ring: Vec<f32> = (0..side * side)
@@ -221,7 +216,6 @@ fn rays_that_go_round_and_impossible_indices_end() {
 
 #[test]
 fn a_ray_that_goes_round_has_the_steps_of_the_reference() {
-    let _turn = gpu::turn();
     // A ring that catches: the index falls off to all sides of a circle about the middle.
     let side = 24_u32;
     let values: Vec<f32> = (0..side * side)
@@ -246,7 +240,6 @@ fn a_ray_that_goes_round_has_the_steps_of_the_reference() {
 
 #[test]
 fn impossible_bends_are_refused() {
-    let _turn = gpu::turn();
     let of = |step| {
         Projector::new(gpu(), shaders(), bent_form(Solved::Emission, Basis::Triangle, Channels::One, step))
     };

@@ -113,7 +113,6 @@ fn errors(found: impl Iterator<Item = f32>, expected: &Grid) -> [f64; 2] {
 
 #[test]
 fn light_of_many_directions_is_that_of_fine_marching() {
-    let _turn = gpu::turn();
     let mut random = Random(3);
     let extinction = cloud(SIZE, &mut random);
     let dense = grid(SIZE, &extinction, 1.0);
@@ -150,7 +149,6 @@ fn light_of_many_directions_is_that_of_fine_marching() {
 
 #[test]
 fn channels_and_grids_of_other_sizes_have_their_own_light() {
-    let _turn = gpu::turn();
     let mut random = Random(5);
     let size = [20, 24, 18];
     let other = [11, 9, 14];
@@ -190,7 +188,6 @@ fn channels_and_grids_of_other_sizes_have_their_own_light() {
 /// Light through a box of the same extinction everywhere fades with the way to the light.
 #[test]
 fn an_even_box_fades_as_it_should() {
-    let _turn = gpu::turn();
     let extinction = 2.3_f32;
     let texture = volume([1; 3], &[extinction], Channels::One);
     let size = [16, 12, 10];
@@ -226,7 +223,6 @@ fn an_even_box_fades_as_it_should() {
 
 #[test]
 fn spots_and_points_shine_from_outside_and_within() {
-    let _turn = gpu::turn();
     let mut random = Random(9);
     let extinction = cloud(SIZE, &mut random);
     let dense = grid(SIZE, &extinction, 1.0);
@@ -272,7 +268,6 @@ fn spots_and_points_shine_from_outside_and_within() {
 
 #[test]
 fn a_plate_casts_its_shadow() {
-    let _turn = gpu::turn();
     let mut random = Random(4);
     let extinction = cloud(SIZE, &mut random);
     let dense = grid(SIZE, &extinction, 1.0);
@@ -357,7 +352,6 @@ fn a_plate_casts_its_shadow() {
 
 #[test]
 fn black_lights_are_black_and_impossible_ones_are_refused() {
-    let _turn = gpu::turn();
     let texture = volume([2; 3], &[1.0; 8], Channels::One);
     let passes = passes(Channels::One, maps(8));
     let light = |lights: &[Lighting]| passes.scattered(gpu(), &texture, placed(), [4; 3], lights, None);

@@ -189,7 +189,6 @@ fn channel_of(values: &[f32], channels: Channels, channel: usize) -> impl Iterat
 
 #[test]
 fn discs_of_light_make_even_surroundings() {
-    let _turn = gpu::turn();
     // Clear air scatters what comes from everywhere: a radiance of 1 is a radiance of 1.
     let texture = volume([2; 3], &[0.0; 8], Channels::One, FACTORS);
     let discs = disc_lights(32, false);
@@ -204,7 +203,6 @@ fn discs_of_light_make_even_surroundings() {
 
 #[test]
 fn both_ways_multiply_with_the_matrix_of_lights_and_its_transpose() {
-    let _turn = gpu::turn();
     let mut random = Random(21);
     // More groups of voxels than a group has threads, and fewer.
     for (channels, size) in [(Channels::One, [40, 24, 23]), (Channels::Rgb, SIZE)] {
@@ -242,7 +240,6 @@ fn both_ways_multiply_with_the_matrix_of_lights_and_its_transpose() {
 
 #[test]
 fn lights_come_back_from_their_own_pictures() {
-    let _turn = gpu::turn();
     let mut random = Random(8);
     let case = Case::new(Channels::Rgb, SIZE, &mut random);
     // Some lights are black.
@@ -274,7 +271,6 @@ fn lights_come_back_from_their_own_pictures() {
 
 #[test]
 fn impossible_pictures_have_their_least_squares() {
-    let _turn = gpu::turn();
     let mut random = Random(13);
     let case = Case::new(Channels::One, SIZE, &mut random);
     let mut some = |low: f64, high: f64| -> Vec<Vec<f32>> {
@@ -319,7 +315,6 @@ fn impossible_pictures_have_their_least_squares() {
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let _turn = gpu::turn();
     let form = |solved| ProjectorForm::new(solved, Channels::One);
     let texture = |size: [u32; 3]| volume(size, &vec![1.0; count(&size)], Channels::One, FACTORS);
     let camera = Camera { viewport: glam::Vec2::splat(256.0), ..cameras()[0].1 };

@@ -11,7 +11,6 @@ use glam::Mat4;
 
 #[test]
 fn pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose() {
-    let _turn = gpu::turn();
     let mut random_ = Random(7);
     for solved in [Solved::Emission, Solved::Albedo, Solved::Both, Solved::Extinction] {
         for (basis, channels, slices, surfaces) in [
@@ -38,7 +37,6 @@ fn pictures_are_products_with_a_matrix_and_back_projections_with_its_transpose()
 
 #[test]
 fn haze_is_not_lost_in_rounding() {
-    let _turn = gpu::turn();
     for solved in [Solved::Emission, Solved::Albedo] {
         let form = form(solved, Basis::Triangle, Channels::Rgb, Transpose::Collect);
         // Of steps of a depth of about 1e-6, 1 - exp(-depth) has one digit.
@@ -65,7 +63,6 @@ fn impossible_views_are_refused() {
 
 #[test]
 fn planes_that_go_on_behind_the_eye_are_collected_from_all_their_pixels() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::inverse::slice_steps::SliceView
                #import airlight::inverse::cg_backproject::{Support, pixels_of_plane}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Back-projections in which rays scatter: products with the transpose, sums that never overflow, the same bits in every run.
 
-use crate::gpu::{self, Random, gpu, shaders};
+use crate::gpu::{Random, gpu, shaders};
 use crate::projectors::{
     Case, EXTINCTION, GRIDS, SIZE, cameras, count, errors, form, placed, random, spread, volume,
 };
@@ -12,7 +12,6 @@ use airlight::{Buffer, Texture};
 
 #[test]
 fn rays_scatter_with_the_weights_of_pictures() {
-    let _turn = gpu::turn();
     let mut random_ = Random(11);
     for transpose in [Transpose::FixedPoint, Transpose::Swap] {
         for solved in [Solved::Emission, Solved::Albedo, Solved::Both, Solved::Extinction] {
@@ -105,7 +104,6 @@ fn difference(found: &[f32], expected: &[f32], sizes: &[f32]) -> f32 {
 
 #[test]
 fn fixed_point_is_what_voxels_collect_and_the_same_bits_in_every_run() {
-    let _turn = gpu::turn();
     for (solved, channels) in [
         (Solved::Emission, Channels::One),
         (Solved::Albedo, Channels::Rgb),
@@ -154,7 +152,6 @@ fn fixed_point_is_what_voxels_collect_and_the_same_bits_in_every_run() {
 
 #[test]
 fn sums_do_not_overflow_where_all_rays_meet_one_voxel() {
-    let _turn = gpu::turn();
     for (solved, extinction, value) in [
         (Solved::Emission, 300.0, -1.999_999_f32),
         (Solved::Emission, 300.0, 1.999_999),
@@ -175,7 +172,6 @@ fn sums_do_not_overflow_where_all_rays_meet_one_voxel() {
 
 #[test]
 fn black_and_broken_pictures_send_back_nothing() {
-    let _turn = gpu::turn();
     for solved in [Solved::Emission, Solved::Albedo, Solved::Extinction] {
         let scene =
             Scene { solved, channels: Channels::One, grid: GRIDS[0], extinction: 2.0, scales: [1.0, 1.0] };
@@ -193,7 +189,6 @@ fn black_and_broken_pictures_send_back_nothing() {
 
 #[test]
 fn sums_that_need_too_much_are_refused() {
-    let _turn = gpu::turn();
     let (_, _, camera) = cameras().remove(0);
     let little = Buffer::storage(gpu(), 16);
     for (channels, transpose, grid, bytes) in [

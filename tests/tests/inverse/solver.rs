@@ -158,7 +158,6 @@ fn solve(case: &Case, iterations: u32, random: &mut Random) -> (Vec<f32>, [f64; 
 
 #[test]
 fn iterations_come_to_the_least_squares_between_bounds() {
-    let _turn = gpu::turn();
     let mut random = Random(11);
     for case in [
         Case { solved: Solved::Emission, regulariser: [0.01, 0.01, 0.0], high: 1e30 },
@@ -179,7 +178,6 @@ fn iterations_come_to_the_least_squares_between_bounds() {
 
 #[test]
 fn own_pictures_come_back() {
-    let _turn = gpu::turn();
     let size = [16; 3];
     let field = |f: &dyn Fn(glam::Vec3) -> [f32; 3]| -> Vec<f32> {
         (0..count(size))

@@ -2,7 +2,7 @@
 //! Streaks along directions in the picture, against means of noise along lines; ridges and valleys, against the table.
 
 use crate::bending::CURVED;
-use crate::gpu::{self, Random, gpu, shaders};
+use crate::gpu::{Random, gpu, shaders};
 use crate::probing::{f, hold};
 use crate::surfaces::{PLAIN, SIZE, Setting, view_of};
 use airlight::Texture;
@@ -58,7 +58,6 @@ fn mean_along(x: usize, y: usize, [dx, dy]: [i64; 2], steps: i64, seed: u32) -> 
 
 #[test]
 fn a_constant_field_gives_means_along_lines() {
-    let _turn = gpu::turn();
     // Steps from middle to middle of pixels.
     for (step, steps) in
         [([1_i64, 0_i64], 9), ([0, 1], 6), ([1, 1], 7), ([-1, 1], 5), ([2, 1], 4), ([-1, 3], 3)]
@@ -84,7 +83,6 @@ fn a_constant_field_gives_means_along_lines() {
 /// Lines follow circles, whichever way each pixel's direction is meant, and do not cross them.
 #[test]
 fn a_turning_field_gives_rings() {
-    let _turn = gpu::turn();
     let centre = [23.5_f32, 19.5];
     let parameters = StreakParameters { steps: 12, step_length: 1.0, seed: 3, contrast: 0.0 };
     let found = streaks(
@@ -126,7 +124,6 @@ fn a_turning_field_gives_rings() {
 
 #[test]
 fn lines_end_where_there_is_no_direction_or_a_kink() {
-    let _turn = gpu::turn();
     let parameters = StreakParameters { steps: 8, step_length: 1.0, seed: 1, contrast: 0.0 };
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.05].map(|value| [value; 2]);
     for (kind, other) in wild.into_iter().chain([[-1.0, 0.0]]).enumerate() {
@@ -170,7 +167,6 @@ fn of_table(table: &[[f32; 4]], side: usize, curvatures: [f64; 2], range: f64) -
 
 #[test]
 fn ridges_and_valleys_have_the_colours_of_the_table() {
-    let _turn = gpu::turn();
     let volume = torus_field([48; 3], 0.55, 0.25);
     let setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::new(0.5, 0.4, 1.0)));
     let mut random = Random(21);
@@ -232,7 +228,6 @@ fn ridges_and_valleys_have_the_colours_of_the_table() {
 
 #[test]
 fn ridges_are_convex_and_valleys_concave() {
-    let _turn = gpu::turn();
     let (ridge, valley) = (Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.0, 0.25, 1.0));
     let table = CurvatureTable::of_ridges_and_valleys(gpu(), ridge, valley).unwrap();
     let texels = table.texture.read(gpu()).unwrap();
@@ -254,7 +249,6 @@ fn ridges_are_convex_and_valleys_concave() {
 
 #[test]
 fn impossible_streaks_and_tables_are_errors() {
-    let _turn = gpu::turn();
     let plain = StreakParameters::default();
     for (parameters, name) in [
         (StreakParameters { steps: 300, ..plain }, "steps"),

@@ -2,7 +2,7 @@
 //! Principal curvatures of surfaces in volumes, against closed forms of spheres, tori, cylinders, planes and saddles.
 
 use crate::bending::{CURVED, bends, boxes, field, hold_curvatures, hold_directions};
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::probing::hold;
 use crate::surfaces::{self, PLAIN, Setting, parallel_view_of, view_of};
 use airlight::core::{DepthRange, PerspectiveView, View};
@@ -14,7 +14,6 @@ use glam::{Mat4, Vec3};
 
 #[test]
 fn spheres_bend_by_their_radius_in_any_box() {
-    let _turn = gpu::turn();
     let radius = 0.6;
     for (what, size, world_from_unit) in boxes() {
         let volume = field(size, world_from_unit, |p| 0.5 - 0.5 * (p.length() - radius));
@@ -29,7 +28,6 @@ fn spheres_bend_by_their_radius_in_any_box() {
 
 #[test]
 fn curvatures_are_in_metres() {
-    let _turn = gpu::turn();
     for (metre, radius) in [(1e-3_f32, 0.6e-3_f64), (500.0, 300.0)] {
         let volume = field([72; 3], Mat4::from_scale(Vec3::splat(metre)) * boxes()[0].2, |p| {
             0.5 - 0.5 * (p.length() - radius) / f64::from(metre)
@@ -56,7 +54,6 @@ fn torus(major: f64, minor: f64) -> (impl Fn(Point) -> [f64; 2], impl Fn(Point) 
 
 #[test]
 fn tori_bend_as_they_should_in_any_box() {
-    let _turn = gpu::turn();
     let (major, minor) = (0.58, 0.27);
     let (curvatures, around) = torus(major, minor);
     for (i, (what, size, world_from_unit)) in boxes().into_iter().enumerate() {
@@ -75,7 +72,6 @@ fn tori_bend_as_they_should_in_any_box() {
 
 #[test]
 fn cylinders_bend_around_their_axis() {
-    let _turn = gpu::turn();
     let axis = Point::new(0.5, 1.0, -0.3).normalised();
     let radius = 0.5;
     let out = |p: Point| p.without(axis);
@@ -94,7 +90,6 @@ fn cylinders_bend_around_their_axis() {
 
 #[test]
 fn hollows_are_concave_whichever_values_are_solid() {
-    let _turn = gpu::turn();
     let radius = 0.7;
     let within: View = PerspectiveView {
         eye: Vec3::new(0.15, -0.1, 0.2),
@@ -122,7 +117,6 @@ fn hollows_are_concave_whichever_values_are_solid() {
 
 #[test]
 fn saddles_bend_both_ways() {
-    let _turn = gpu::turn();
     // Solid below the height 0.4 x^2 - 0.7 y^2 + 0.2 x y.
     let bend = [[0.8, 0.2, 0.0], [0.2, -1.4, 0.0], [0.0; 3]];
     let slope = 0.3;
@@ -154,7 +148,6 @@ fn saddles_bend_both_ways() {
 
 #[test]
 fn planes_and_faces_do_not_bend() {
-    let _turn = gpu::turn();
     for normal in [Point::new(0.0, 0.0, 1.0), Point::new(0.3, -0.5, 1.0).normalised()] {
         let volume = field([64; 3], boxes()[0].2, |p| 0.5 - 0.25 * p.dot(normal));
         let setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::new(0.1, 0.2, 1.0)));
@@ -178,7 +171,6 @@ fn planes_and_faces_do_not_bend() {
 
 #[test]
 fn wild_voxels_and_steps_stay_finite() {
-    let _turn = gpu::turn();
     let volume = field([40; 3], boxes()[0].2, |p| 0.5 - 0.5 * (p.length() - 0.6));
     let view = view_of(&volume, Vec3::new(0.5, 0.4, 1.0));
     let mut setting = Setting::new(volume.clone(), &view);
@@ -218,7 +210,6 @@ fn wild_voxels_and_steps_stay_finite() {
 
 #[test]
 fn curvature_changes_no_other_target_and_skipping_no_bit_of_it() {
-    let _turn = gpu::turn();
     let setting = surfaces::head_setting(Vec3::new(0.3, 0.2, 1.0));
     let volume = setting.uploaded();
     let mut curved = setting.seen_of(&volume, CURVED);

@@ -2,7 +2,7 @@
 //! Functions of splines and curvatures by themselves: against sums over all voxels and eigenvalues in f64, and with numbers
 //! from one end of f32 to the other.
 
-use crate::gpu::{self, Probe, Random, copy_of_wgsl, gpu};
+use crate::gpu::{Probe, Random, copy_of_wgsl, gpu};
 use crate::probing::{f, hold, triple};
 use airlight::validate::{Definitions, Library};
 use airlight::{Buffer, Pass, Sampler, Shaders, Texture};
@@ -78,7 +78,6 @@ fn random_places(random: &mut Random, count: usize) -> Vec<[f64; 3]> {
 
 #[test]
 fn fetches_and_loads_are_the_sum_over_all_voxels() {
-    let _turn = gpu::turn();
     let mut random = Random(9);
     for size in [[7, 6, 5], [1, 9, 4], [2, 1, 3]] {
         let texels = random_texels(&mut random, size.iter().product());
@@ -102,7 +101,6 @@ fn fetches_and_loads_are_the_sum_over_all_voxels() {
 
 #[test]
 fn wild_voxels_are_replaced_one_by_one() {
-    let _turn = gpu::turn();
     let mut random = Random(10);
     let size = [8, 7, 6];
     let mut wild = random_texels(&mut random, 8 * 7 * 6);
@@ -171,7 +169,6 @@ fn random_form(random: &mut Random) -> Form {
 
 #[test]
 fn curvatures_are_eigenvalues_in_any_space() {
-    let _turn = gpu::turn();
     let mut random = Random(11);
     let (mut records, mut exact) = (Vec::new(), Vec::new());
     for i in 0..600 {
@@ -218,7 +215,6 @@ fn curvatures_are_eigenvalues_in_any_space() {
 
 #[test]
 fn umbilics_and_odd_numbers_are_finite() {
-    let _turn = gpu::turn();
     let mut random = Random(12);
     let ends = [0.0, 1e-38, -1e-38, 1e-20, 1e-6, 1.0, -1.0, 2.0];
     let mut records = Vec::new();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Ray casting of iso-surfaces against dense sampling in f64, analytic gradients and analytic motion.
 
-use crate::gpu::{self, matrix, vector};
+use crate::gpu::{matrix, vector};
 use crate::probing::{hold, triple};
 use crate::surfaces::{
     PLAIN, SIZE, Seen, Setting, head_setting, hits_are_crossings, parallel_view_of, reference_camera, turned,
@@ -16,7 +16,6 @@ use glam::{Mat3, Mat4, Vec3};
 
 #[test]
 fn hits_are_those_of_dense_sampling() {
-    let _turn = gpu::turn();
     let eye = Vec3::new(0.5, 0.4, 1.0);
     let cases: [(&str, Volume); 3] = [
         ("sphere", sphere_field([40; 3], 0.6)),
@@ -36,7 +35,6 @@ fn hits_are_those_of_dense_sampling() {
 
 #[test]
 fn hits_are_right_for_any_camera_step_and_refinement() {
-    let _turn = gpu::turn();
     let volume = torus_field([40; 3], 0.55, 0.22);
     let eye = Vec3::new(-0.7, 0.6, 1.0);
     let views = [
@@ -94,7 +92,6 @@ fn gradient_errors(
 
 #[test]
 fn gradients_of_quadratic_fields_are_within_a_degree() {
-    let _turn = gpu::turn();
     let curvature = Mat3::from_cols_array(&[0.5, 0.1, -0.2, 0.1, -0.4, 0.15, -0.2, 0.15, 0.3]);
     let slope = Vec3::new(-0.1, -0.15, -0.3);
     let mut volume = quadric_field([64, 56, 48], slope, curvature);
@@ -119,7 +116,6 @@ fn gradients_of_quadratic_fields_are_within_a_degree() {
 /// Away from its Nyquist rings: where the local wave is 20 voxels long and more; at 16 voxels 2.1 degrees occur.
 #[test]
 fn gradients_of_marschner_lobb_are_within_two_degrees() {
-    let _turn = gpu::turn();
     let volume = marschner_lobb([256; 3]);
     let view = view_of(&volume, Vec3::new(0.2, 0.3, 1.0));
     let setting = Setting::new(volume, &view);
@@ -136,7 +132,6 @@ fn gradients_of_marschner_lobb_are_within_two_degrees() {
 
 #[test]
 fn flow_is_the_motion_of_the_point() {
-    let _turn = gpu::turn();
     let volume = torus_field([48; 3], 0.55, 0.25);
     let eye = Vec3::new(0.5, 0.6, 1.0);
     let moved = |view: View| match view {

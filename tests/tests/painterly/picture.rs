@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Paintings: strokes on what rays find in volumes, over a ground.
 
-use crate::gpu::{self, Random, gpu, matrix, shaders};
+use crate::gpu::{Random, gpu, matrix, shaders};
 use crate::painted::{Exhibit, SIZE, paint, place, settings, staying, style};
 use crate::surfaces::{PLAIN, RAMP, head, reference_camera};
 use airlight::Texture;
@@ -53,7 +53,6 @@ fn layers_seen(painting: &Painting<'_>, style: &PainterlyStyle) -> [f64; 3] {
 
 #[test]
 fn two_paintings_have_the_same_bits() {
-    let _turn = gpu::turn();
     let exhibit = head_exhibit();
     let run = |seed| {
         let mut settings = settings(head_style(), SIZE);
@@ -181,7 +180,6 @@ fn strokes_keep_to_their_points(exhibit: &Exhibit, style: PainterlyStyle) {
 
 #[test]
 fn strokes_keep_to_their_points_of_a_sphere() {
-    let _turn = gpu::turn();
     let mut exhibit = Exhibit::new(sphere_field([40; 3], 0.6), Some([0.0, 1.0]), &RAMP);
     exhibit.turn = 3_f32.to_radians();
     strokes_keep_to_their_points(&exhibit, style([0.3, 0.6, 2.0]));
@@ -189,13 +187,11 @@ fn strokes_keep_to_their_points_of_a_sphere() {
 
 #[test]
 fn strokes_keep_to_their_points_of_a_head() {
-    let _turn = gpu::turn();
     strokes_keep_to_their_points(&head_exhibit(), head_style());
 }
 
 #[test]
 fn half_the_rays_paint_a_picture_alike() {
-    let _turn = gpu::turn();
     let exhibit = head_exhibit();
     let style = head_style();
     let run = |size: [u32; 2]| {
@@ -230,7 +226,6 @@ fn half_the_rays_paint_a_picture_alike() {
 
 #[test]
 fn another_iso_value_needs_no_other_ranges() {
-    let _turn = gpu::turn();
     let mut exhibit = head_exhibit();
     let other = IsoSettings { iso_value: 0.12, ..IsoSettings::default() };
     let seen = |painting: &Painting<'_>| bits(painting)[..4].to_vec();
@@ -279,7 +274,6 @@ fn bilinear([width, height]: [usize; 2], texels: &[f32], [u, v]: [f64; 2]) -> [f
 
 #[test]
 fn the_ground_is_a_mix_of_canvas_and_surface() {
-    let _turn = gpu::turn();
     let exhibit = head_exhibit();
     for (size, underpainting) in [(SIZE, 1.0_f32), ([90, 50], 0.7), ([90, 50], 0.0)] {
         let mut settings = settings(head_style(), size);
@@ -312,7 +306,6 @@ fn the_ground_is_a_mix_of_canvas_and_surface() {
 
 #[test]
 fn wild_volumes_leave_no_nan() {
-    let _turn = gpu::turn();
     let mut random = Random(3);
     let mut volume = sphere_field([32; 3], 0.6);
     for value in volume.values.iter_mut() {
@@ -350,7 +343,6 @@ fn wild_volumes_leave_no_nan() {
 
 #[test]
 fn a_full_buffer_goes_on_and_counts_what_it_drops() {
-    let _turn = gpu::turn();
     let exhibit = head_exhibit();
     let mut settings = settings(head_style(), SIZE);
     settings.strokes.capacity = 150;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Passing over bricks in which nothing is solid changes no bit of any target, and bricks are those of f64.
 
-use crate::gpu::{self, Random, gpu, shaders};
+use crate::gpu::{Random, gpu, shaders};
 use crate::surfaces::{PLAIN, Setting, head, parallel_view_of, view_of};
 use airlight::core::{DepthRange, Jitter, PerspectiveView};
 use airlight::data::{Volume, marschner_lobb, torus_field};
@@ -101,7 +101,6 @@ fn skipping_changes_nothing(
 
 #[test]
 fn skipping_changes_no_bit() {
-    let _turn = gpu::turn();
     let mut random = Random(4242);
     let eye = Vec3::new(0.5, 0.4, 1.0);
     let volumes =
@@ -139,7 +138,6 @@ fn skipping_changes_no_bit() {
 /// Texels that are not finite count as 0, which may be what is solid.
 #[test]
 fn wild_texels_are_not_passed_over() {
-    let _turn = gpu::turn();
     let volume =
         Volume::new([40; 3], vec![0.0; 64000], torus_field([1; 3], 0.5, 0.2).world_from_unit).unwrap();
     let mut setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::new(0.5, 0.4, 1.0)));
@@ -163,7 +161,6 @@ fn wild_texels_are_not_passed_over() {
 
 #[test]
 fn nothing_solid_passes_over_everything() {
-    let _turn = gpu::turn();
     let volume = torus_field([40; 3], 0.5, 0.2);
     let mut setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::ONE));
     setting.table = vec![[1.0, 1.0, 1.0, 0.3]; 5];

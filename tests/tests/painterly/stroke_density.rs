@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Densities and pictures of strokes against sums and blends in f64 over the strokes that were read back.
 
-use crate::gpu::{self, gpu};
+use crate::gpu::gpu;
 use crate::turning::{Show, Turning, even_brush, style};
 use airlight::Texture;
 use airlight::painterly::{BrushImage, Brushes, PainterlyStyle, Stroke, StrokeState};
@@ -82,7 +82,6 @@ fn densities(show: &mut Show, anticipation: f64, brush: impl Fn([f64; 2]) -> f64
 
 #[test]
 fn densities_are_the_sums_of_their_strokes() {
-    let _turn = gpu::turn();
     // 100 texels by 63: the last row reaches beyond the picture, and is scaled like the others.
     for (step, anticipation) in [(4, 1.0), (2, 0.0), (4, 0.4)] {
         let of = PainterlyStyle { anticipation: anticipation as f32, ..style() };
@@ -100,7 +99,6 @@ fn densities_are_the_sums_of_their_strokes() {
 
 #[test]
 fn densities_count_the_opacity_of_the_brush() {
-    let _turn = gpu::turn();
     let shape = |c: [f64; 2]| 0.25 * (1.0 - (2.0 * PI * c[0]).cos()) * (1.0 - (2.0 * PI * c[1]).cos());
     let texels = (0..128 * 32).map(|k| {
         let alpha = shape([(f64::from(k % 128) + 0.5) / 128.0, (f64::from(k / 128) + 0.5) / 32.0]) as f32;
@@ -141,7 +139,6 @@ fn blended(strokes: &[Stroke], order: &[u32], opacity: f64, ground: [f64; 4]) ->
 
 #[test]
 fn pictures_at_full_size_are_strokes_blended_in_their_order() {
-    let _turn = gpu::turn();
     // Brushes of no hue, so that tints come through: white, of 0.7 opacity.
     let opacity = (0.7_f32 * 255.0).round() / 255.0;
     let image = BrushImage::new([1, 1], vec![[opacity; 4]]).unwrap();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The life of strokes: fading, leaving a layer, a full buffer, sources that are not finite.
 
-use crate::gpu::{self, Random, gpu, shaders};
+use crate::gpu::{Random, gpu, shaders};
 use crate::turning::{MAGNITUDES, Show, Targets, Turning, even_brush, style};
 use airlight::Texture;
 use airlight::painterly::{PainterlyStyle, Rates, Stroke, StrokeError, StrokeState, StrokeTargets, Strokes};
@@ -21,7 +21,6 @@ fn by_hash(strokes: Vec<Stroke>) -> HashMap<u32, Stroke> {
 
 #[test]
 fn strokes_fade_in_and_out_at_their_rates() {
-    let _turn = gpu::turn();
     let rates = Rates { fade_in: 0.1, fade_out: 0.25, hidden: 0.6, ..Rates::SEAMLESS };
     let mut show = show(PainterlyStyle { rates, ..style() });
     show.frame(0, |_| ());
@@ -88,7 +87,6 @@ fn strokes_fade_in_and_out_at_their_rates() {
 
 #[test]
 fn a_gradient_at_a_threshold_does_not_chase_strokes_away() {
-    let _turn = gpu::turn();
     // Three magnitudes around the first threshold, by turns: 8 % above it is within the hysteresis of 10 %, 15 % is not.
     for (above, stay) in [(1.08, true), (1.15, false)] {
         let mut show = show(style());
@@ -105,7 +103,6 @@ fn a_gradient_at_a_threshold_does_not_chase_strokes_away() {
 
 #[test]
 fn a_full_buffer_keeps_its_strokes_and_drops_new_ones() {
-    let _turn = gpu::turn();
     let of = |seed| {
         Show::new(Turning::ball(SIZE), style(), even_brush(1.0), move |mut settings| {
             (settings.capacity, settings.seed) = (700, seed);
@@ -150,7 +147,6 @@ fn finite(strokes: &[Stroke]) -> bool {
 
 #[test]
 fn sources_that_are_not_finite_do_no_harm() {
-    let _turn = gpu::turn();
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -f32::NAN];
     let mut random = Random(4);
     let mut show = show(style());
@@ -187,7 +183,6 @@ fn sources_that_are_not_finite_do_no_harm() {
 
 #[test]
 fn impossible_wishes_are_refused() {
-    let _turn = gpu::turn();
     let mut show = show(style());
     show.frame(0, |_| ());
     let mut refused = |change: &dyn Fn(&mut StrokeTargets<'_>, &mut airlight::painterly::StrokeStep)| {

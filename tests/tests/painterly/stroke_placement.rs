@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Chance and layers: what is drawn for pixels is even, independent, and says yes as often as it should.
 
-use crate::gpu::{self, Probe, Random};
+use crate::gpu::{Probe, Random};
 use airlight_tests::reference::noise::hash;
 use airlight_tests::reference::painterly::strokes::layer;
 use airlight_tests::statistics::{Test, binomial, sample_mean, two_sided};
@@ -46,7 +46,6 @@ fn agree(what: &str, test: Test) {
 
 #[test]
 fn placement_draws_evenly_and_anew_in_every_pixel_layer_and_frame() {
-    let _turn = gpu::turn();
     let pixels = (SIDE * SIDE) as u64;
     let [first, next, other_layer, other_seed] =
         [(0, 7, 1), (0, 8, 1), (1, 7, 1), (0, 7, 2)].map(|(layer, frame, seed)| drawn(layer, frame, seed));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! How many strokes there are: as many as chance gives by expectation, and within the bounds of density while the shape turns.
 
-use crate::gpu::{self, gpu};
+use crate::gpu::gpu;
 use crate::turning::{Show, Turning, even_brush, style};
 use airlight::painterly::{Brushes, PainterlyStyle, STYLES, StrokeState, parse_style};
 use airlight_tests::reference::camera::Camera;
@@ -19,7 +19,6 @@ fn areas(turning: &Turning, frame: u32) -> [f64; 3] {
 
 #[test]
 fn first_strokes_are_as_many_as_expected_in_each_layer() {
-    let _turn = gpu::turn();
     let size = [480, 300];
     let table = |name: &str| {
         let (_, text) = STYLES.iter().find(|(known, _)| *known == name).unwrap();
@@ -92,7 +91,6 @@ fn densities(show: &Show, frame: u32) -> [(f64, Vec<f64>); 3] {
 
 #[test]
 fn densities_stay_within_their_bounds_while_the_shape_turns() {
-    let _turn = gpu::turn();
     let mut show = Show::new(Turning::ball([640, 400]), style(), even_brush(1.0), |mut settings| {
         settings.picture_size = [1280, 800];
         settings
@@ -119,7 +117,6 @@ fn densities_stay_within_their_bounds_while_the_shape_turns() {
 
 #[test]
 fn what_is_too_dense_is_thinned_out_to_the_maximum_at_once() {
-    let _turn = gpu::turn();
     // Bounds that are lowered once strokes lie densely.
     let mut show = Show::new(Turning::ball([400, 250]), style(), even_brush(1.0), |settings| settings);
     for _ in 0..4 {
@@ -142,7 +139,6 @@ fn what_is_too_dense_is_thinned_out_to_the_maximum_at_once() {
 
 #[test]
 fn the_dense_style_has_thirty_to_fifty_thousand_strokes() {
-    let _turn = gpu::turn();
     let (_, text) = STYLES.iter().find(|(name, _)| *name == "dense").unwrap();
     let style = parse_style("dense", text).unwrap();
     // A ball of nine tenths of the height covers 0.4 of the picture; sources of half its size.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Strokes on a ball that turns: they follow it, stay while it shows them, hide where it does not, and repeat bit for bit.
 
-use crate::gpu::{self, gpu};
+use crate::gpu::gpu;
 use crate::turning::{Show, Turning, even_brush, paint, reference, style};
 use airlight::Texture;
 use airlight::painterly::{Brushes, Orientation, PainterlyStyle, Stroke, StrokeState};
@@ -36,7 +36,6 @@ fn orthographic(size: [u32; 2]) -> Turning {
 
 #[test]
 fn strokes_keep_to_their_points_and_stay_while_these_are_seen() {
-    let _turn = gpu::turn();
     for turning in [Turning::ball(SIZE), orthographic(SIZE)] {
         let mut show = settled(turning, style(), 15);
         let before: Vec<Stroke> =
@@ -88,7 +87,6 @@ fn strokes_keep_to_their_points_and_stay_while_these_are_seen() {
 
 #[test]
 fn what_comes_before_the_surface_hides_its_strokes() {
-    let _turn = gpu::turn();
     let mut show = settled(Turning::ball(SIZE), style(), 6);
     let before = show.read();
     // Something in front of the left half of the picture, of the same layers.
@@ -133,7 +131,6 @@ fn everything(show: &Show) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
 
 #[test]
 fn two_runs_give_the_same_bits_and_another_seed_does_not() {
-    let _turn = gpu::turn();
     let run = |seed| {
         let brushes = Brushes::procedural(gpu()).unwrap();
         let mut show = Show::new(Turning::ball(SIZE), style(), brushes, |mut settings| {
@@ -153,7 +150,6 @@ fn two_runs_give_the_same_bits_and_another_seed_does_not() {
 
 #[test]
 fn coarse_strokes_come_first_and_old_ones_before_new_ones() {
-    let _turn = gpu::turn();
     let mut show = settled(Turning::ball(SIZE), style(), 5);
     let old = show.read();
     let counts = show.frame(5, |_| ());
@@ -177,7 +173,6 @@ fn coarse_strokes_come_first_and_old_ones_before_new_ones() {
 
 #[test]
 fn strokes_take_color_and_orientation_from_their_surface() {
-    let _turn = gpu::turn();
     let mut show = settled(Turning::ball(SIZE), style(), 1);
     let posed = show.turning.posed(0);
     let camera = show.turning.camera;

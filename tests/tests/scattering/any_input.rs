@@ -86,7 +86,6 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     const PIXELS: usize = 128;
     const MAP: [u32; 2] = [16, 8];
     const SHADOW: [u32; 2] = [8, 8];
-    let _turn = gpu::turn();
     let mut random = Random(2024);
     let first = wild(&mut random, PICTURE);
     let camera = Buffer::uniform(gpu(), &first.camera);
@@ -226,7 +225,6 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
 
 #[test]
 fn depths_that_are_not_finite_count_as_empty_and_far() {
-    let _turn = gpu::turn();
     let scene = gpu::small_tree();
     let (picture, shadow) = ([60, 40], [64, 64]);
     let mut stage = scene.stage(picture, shadow);

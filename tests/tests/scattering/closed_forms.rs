@@ -10,7 +10,6 @@ use glam::Vec3;
 
 #[test]
 fn an_empty_shadow_map_lights_everything_and_a_slab_has_its_closed_form() {
-    let _turn = gpu::turn();
     let lights = [Vec3::Y, Vec3::new(0.4, 0.3, 0.2).normalize(), Vec3::new(-0.9, -0.2, 0.1).normalize()];
     for (g, extinction, light) in [(0.0, 0.1, lights[0]), (0.7, 0.6, lights[1]), (-0.4, 0.004, lights[2])] {
         let medium = Medium::new(extinction, Vec3::splat(0.8), g, 20.0).unwrap();
@@ -41,7 +40,6 @@ fn an_empty_shadow_map_lights_everything_and_a_slab_has_its_closed_form() {
 
 #[test]
 fn a_half_plane_blocker_has_its_closed_form() {
-    let _turn = gpu::turn();
     let medium = Medium::new(0.15, Vec3::splat(0.8), 0.2, 20.0).unwrap();
     // Everything beyond x = 0 lies in shadow, whatever the height.
     let case = Synthetic::new(medium, Vec3::Y, |x, _| x > 0.0);

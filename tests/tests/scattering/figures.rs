@@ -2,7 +2,6 @@
 //! Average visibility and radiance by prefiltered bases, within the figures that the book states.
 
 use crate::cases::{Case, PICTURE, foliage, plane};
-use crate::gpu::{self};
 use crate::methods::{marched, prefiltered};
 use airlight::scattering::{Along, BasisFormat, Settings, Weighting};
 use airlight_tests::error;
@@ -15,7 +14,6 @@ fn average_error(case: &Case, settings: Settings) -> f64 {
 
 #[test]
 fn average_visibility_on_foliage_falls_with_the_bases_to_its_figure() {
-    let _turn = gpu::turn();
     let mut previous = f64::INFINITY;
     let mut figures = Vec::new();
     for bases in [4, 8, 16, 32, 64, 128] {
@@ -38,7 +36,6 @@ fn average_visibility_on_foliage_falls_with_the_bases_to_its_figure() {
 
 #[test]
 fn average_visibility_on_a_plane_under_an_overhead_light_reaches_its_figure() {
-    let _turn = gpu::turn();
     let found = average_error(plane(), Settings::default());
     let half = average_error(plane(), Settings { format: BasisFormat::Rgba16Float, ..Settings::default() });
     let plain = average_error(plane(), Settings { window: false, ..Settings::default() });
@@ -54,7 +51,6 @@ fn radiance_error(case: &Case, map: [u32; 2]) -> f64 {
 
 #[test]
 fn radiance_reaches_its_figures() {
-    let _turn = gpu::turn();
     let cases = [("foliage", 0.03), ("terrain", 0.03), ("torus", 0.05)];
     let mut failures = Vec::new();
     for (name, budget) in cases {

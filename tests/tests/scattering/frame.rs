@@ -12,7 +12,6 @@ use wgpu::TextureFormat::R32Float;
 
 #[test]
 fn frame_and_slices_are_those_of_the_reference() {
-    let _turn = gpu::turn();
     const ROWS: usize = 64;
     let limit = 80.0_f64;
     let map = Rectification::new(gpu(), shaders(), [8, ROWS as u32]).unwrap();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Functions of the modules for lights at a point, evaluated on the GPU and held to f64 within a stated error budget.
 
-use crate::gpu::{self, Probe, Random};
+use crate::gpu::{Probe, Random};
 use crate::probing::hold;
 use airlight_tests::linear::Vec3;
 use airlight_tests::reference::phase::henyey_greenstein;
@@ -310,7 +310,6 @@ fn cones_are_cut_where_they_are() {
 
 #[test]
 fn greatest_sine_of_a_slice_is_within_two_percent() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::scattering::rectify::{Slice, greatest_sine}",
         body: "output(0u, greatest_sine(Slice(input(0u), input(1u), 1.0, 0.5)));",

@@ -8,7 +8,6 @@ use wgpu::TextureFormat::R32Float;
 
 #[test]
 fn blockers_only_take_light_away() {
-    let _turn = gpu::turn();
     for scene in [gpu::torus_over_plane(), gpu::small_tree()] {
         let picture = [120, 80];
         let mut stage = scene.stage(picture, [256, 256]);
@@ -27,7 +26,6 @@ fn blockers_only_take_light_away() {
 
 #[test]
 fn thicker_air_scatters_more_of_a_lit_ray() {
-    let _turn = gpu::turn();
     let scene = gpu::torus_over_plane();
     let picture = [60, 40];
     let mut stage = scene.stage(picture, [64, 64]);

@@ -13,7 +13,6 @@ use reference::{LocalRows, Over, Start, Weights};
 
 #[test]
 fn slices_hold_what_rays_reach_inside_the_cone() {
-    let _turn = gpu::turn();
     for case in [Case::new("spot", spot(), None, None), Case::new("point", point(), None, None)] {
         let (method, _) = prefiltered(&case, case.settings());
         let texels = method.rectification.slices.read(gpu()).unwrap();
@@ -42,7 +41,6 @@ fn slices_hold_what_rays_reach_inside_the_cone() {
 
 #[test]
 fn rectified_maps_are_those_of_the_reference() {
-    let _turn = gpu::turn();
     for case in [Case::new("spot", spot(), None, None), Case::new("point", point(), None, None)] {
         let (method, _) = prefiltered(&case, case.settings());
         let found = method.rectification.rectified.read(gpu()).unwrap();
@@ -82,7 +80,6 @@ fn over_rows(case: &Case, method: &Prefiltered, weights: Weights) -> reference::
 
 #[test]
 fn without_blockers_radiance_is_that_of_the_airlight_integral() {
-    let _turn = gpu::turn();
     for case in [
         Case::new("spot", spot(), None, None).empty(),
         Case::new("point", point(), None, None).empty(),
@@ -105,7 +102,6 @@ fn without_blockers_radiance_is_that_of_the_airlight_integral() {
 
 #[test]
 fn radiance_reaches_its_figures() {
-    let _turn = gpu::turn();
     let cases = [
         Case::new("spot", spot(), None, None),
         Case::new("point", point(), None, None),
@@ -189,7 +185,6 @@ fn stored_means(map: &Texture, color: u32) -> Vec<[f64; 7]> {
 
 #[test]
 fn moments_are_prefix_means_with_the_light_s_fall_off() {
-    let _turn = gpu::turn();
     for (case, budget) in [
         (Case::new("spot", spot(), None, None), 5e-6),
         (Case::new("spot, texture", spot(), Some(panes()), None), 1e-4),

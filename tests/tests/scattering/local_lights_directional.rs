@@ -15,7 +15,6 @@ use wgpu::TextureFormat::R32Float;
 
 #[test]
 fn one_cascade_is_the_single_map() {
-    let _turn = gpu::turn();
     let mut plain = Case::new("sun", sun(), None, None);
     let mut cascades = Case::new("cascades", sun(), None, Some(Cascades::new(1)));
     // The same map and matrix, as an array of one. Its border is blocked, for light rays beyond it are not.
@@ -52,7 +51,6 @@ fn one_cascade_is_the_single_map() {
 
 #[test]
 fn cascades_show_what_the_single_map_shows() {
-    let _turn = gpu::turn();
     let plain = Case::new("sun", sun(), None, None);
     let cascades = Case::new("cascades", sun(), None, Some(Cascades::new(3)));
     assert!(cascades.form.shadow_array && !cascades.form.local());
@@ -65,7 +63,6 @@ fn cascades_show_what_the_single_map_shows() {
 
 #[test]
 fn a_texture_colours_a_directional_light() {
-    let _turn = gpu::turn();
     let case = Case::new("sun, texture", sun(), Some(panes()), None);
     let plain = Case::new("sun", sun(), None, None);
     // White lets through what is there without it.
@@ -122,7 +119,6 @@ fn a_texture_colours_a_directional_light() {
 
 #[test]
 fn a_half_space_blocker_leaves_the_other_half() {
-    let _turn = gpu::turn();
     // A spot straight above that shines down; everything beyond the plane x = x of the light is blocked right there.
     let light = Lighting::Spot {
         position: Vec3::new(0.0, 6.0, 0.0),

@@ -65,7 +65,6 @@ fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
     const COUNT: usize = 540;
     const PICTURE: [u32; 2] = [16, 8];
     const MAP: [u32; 2] = [16, 8];
-    let _turn = gpu::turn();
     let mut random = Random(4048);
     let base = [
         LightForm { spot: true, ..LightForm::default() },

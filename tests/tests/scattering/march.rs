@@ -22,7 +22,6 @@ fn nearest_row(case: &Case) -> (Vec<f64>, Vec<f64>) {
 
 #[test]
 fn march_along_rows_is_the_exact_sum_over_the_nearest_row() {
-    let _turn = gpu::turn();
     let case = foliage();
     let (average, weighted) = nearest_row(case);
     for (weighting, expected) in [(Weighting::Average, average), (Weighting::Transmittance, weighted)] {

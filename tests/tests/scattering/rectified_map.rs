@@ -10,7 +10,6 @@ use airlight_tests::reference::scattering as reference;
 
 #[test]
 fn rectified_maps_are_those_of_the_reference() {
-    let _turn = gpu::turn();
     let torus = gpu::torus_over_plane();
     let tree = gpu::small_tree();
     let cases: [(&str, &Stage, _, &Rectification); 2] = [

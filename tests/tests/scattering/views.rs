@@ -11,7 +11,6 @@ use airlight_tests::error::relative_rmse;
 
 #[test]
 fn views_of_one_call_are_those_of_their_own() {
-    let _turn = gpu::turn();
     let scene = gpu::torus_over_plane();
     let stage = scene.stage([64, 48], [256, 256]);
     let settings = Settings { map: [128, 128], ..Settings::default() };

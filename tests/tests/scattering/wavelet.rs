@@ -17,7 +17,6 @@ fn wavelet(bits: u32) -> Settings {
 
 #[test]
 fn counts_are_exactly_those_of_the_stepped_map() {
-    let _turn = gpu::turn();
     rank_rows::hold_counts(601, |bits| Visibility::Wavelet { bits });
 }
 
@@ -47,7 +46,6 @@ fn matrix(row: &[f32], bits: u32) -> Vec<[u32; 4]> {
 
 #[test]
 fn the_matrix_is_that_of_the_book() {
-    let _turn = gpu::turn();
     let mut random = Random(602);
     for bits in [8, 10, 12] {
         for width in [1, 31, 32, 100, 2048] {
@@ -68,7 +66,6 @@ fn the_matrix_is_that_of_the_book() {
 
 #[test]
 fn the_example_of_the_book() {
-    let _turn = gpu::turn();
     // Eight bits are two levels of equal digits, here 0, and two of the example's, whose eight places are one block here.
     let row = [9, 4, 14, 5, 13, 0, 8, 9].map(|value| value as f32 / 255.0);
     let texels = matrix(&row, 8);
@@ -81,7 +78,6 @@ fn the_example_of_the_book() {
 
 #[test]
 fn pictures_are_those_of_rank_queries() {
-    let _turn = gpu::turn();
     const PICTURE: [u32; 2] = [160, 90];
     let scene = gpu::small_tree();
     let stage = scene.stage(PICTURE, [512, 512]);
@@ -115,7 +111,6 @@ fn pictures_are_those_of_rank_queries() {
 
 #[test]
 fn it_takes_less_than_a_tenth_of_32_bases() {
-    let _turn = gpu::turn();
     let memory = |settings: Settings| {
         Prefiltered::new(gpu(), shaders(), settings, [16, 16]).unwrap().prefilter.memory() as f64
     };
@@ -130,7 +125,6 @@ fn it_takes_less_than_a_tenth_of_32_bases() {
 
 #[test]
 fn what_a_wavelet_matrix_cannot_do_is_refused() {
-    let _turn = gpu::turn();
     let fine = Settings { map: [64, 16], ..wavelet(12) };
     for bits in [0, 6, 7, 9, 11, 13, 14, u32::MAX] {
         assert_eq!(

@@ -2,7 +2,7 @@
 //! Pictures by sheets of splats: constant volumes are constant, batches and sorting change no bit, nothing and nonsense have
 //! defined pictures, and a ball has the normals of a ball.
 
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::sheets::{self, colored, metres, parallel, shoot, splats};
 use airlight::core::{Camera, DepthRange, Light, PerspectiveView};
 use airlight::data::{Volume, cloud};
@@ -29,7 +29,6 @@ fn few(count: u32) -> SheetSettings {
 
 #[test]
 fn footprints_of_a_constant_volume_add_up_to_a_constant() {
-    let _turn = gpu::turn();
     let volume = metres([28, 12, 28], |_| 0.5);
     let splats = splats(&volume);
     let transfer = colored([Vec3::ONE; 2]);
@@ -65,7 +64,6 @@ fn footprints_of_a_constant_volume_add_up_to_a_constant() {
 /// Two thin clouds of one kind: what comes from them is as the inverse squares of their distances from a point light.
 #[test]
 fn light_of_a_point_falls_off_with_the_square_of_the_distance() {
-    let _turn = gpu::turn();
     let position = Vec3::new(-16.0, 0.0, 0.0);
     // Balls of a metre and a half, 8 and 24 m from the light.
     let ball = |place: Vec3, x: f32| f32::from((place - Vec3::new(x, 0.0, 0.0)).length() < 1.6);
@@ -98,7 +96,6 @@ fn light_of_a_point_falls_off_with_the_square_of_the_distance() {
 /// Over the whole shadow buffer, row for row.
 #[test]
 fn light_textures_lie_over_the_shadow_buffer() {
-    let _turn = gpu::turn();
     let (volume, frame) = cloud_frame(60.0);
     let none = [Splats::new(gpu(), shaders(), &volume, 10.0, None).unwrap()];
     let transfer = colored([Vec3::ONE; 2]);
@@ -131,7 +128,6 @@ fn cloud_frame(degrees: f32) -> (Volume, SheetFrame) {
 
 #[test]
 fn batches_sorting_and_repetition_change_no_bit() {
-    let _turn = gpu::turn();
     for shading in [Shading::Scattering, Shading::Phong] {
         for degrees in [35.0, 140.0] {
             let (volume, frame) = cloud_frame(degrees);
@@ -163,7 +159,6 @@ fn batches_sorting_and_repetition_change_no_bit() {
 
 #[test]
 fn no_splats_are_no_medium() {
-    let _turn = gpu::turn();
     let (volume, frame) = cloud_frame(60.0);
     let none = Splats::new(gpu(), shaders(), &volume, 10.0, None).unwrap();
     assert_eq!((none.count(), none.batches()), (0, 0));
@@ -177,7 +172,6 @@ fn no_splats_are_no_medium() {
 
 #[test]
 fn nonsense_leaves_no_hole() {
-    let _turn = gpu::turn();
     let (mut volume, frame) = cloud_frame(60.0);
     for (place, value) in
         [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 3e38, 1e-30].into_iter().enumerate()
@@ -250,7 +244,6 @@ fn normal_of_ball(offset: Vec3, direction: Vec3, radius: f32) -> Option<Vec3> {
 
 #[test]
 fn a_ball_lit_by_phong_has_the_normals_of_a_ball() {
-    let _turn = gpu::turn();
     // Rises from 0 to 1 over two voxels.
     let radius = 11.0_f32;
     let volume = metres([30; 3], |place| ((radius + 1.0 - place.length()) / 2.0).clamp(0.0, 1.0));

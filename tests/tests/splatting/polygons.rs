@@ -2,7 +2,7 @@
 //! Polygons and volumes in one picture, against an f64 ray marcher that tries every ray against every triangle: shadows of
 //! polygons before, within and behind the volume, and the whole picture.
 
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::sheet_scene::{camera, directions, field_of, light, small_cloud};
 use crate::sheets::{Shot, colored, metres, shoot_all, splats};
 use airlight::core::Light;
@@ -121,7 +121,6 @@ fn lit_by_rays(mixed: &Mixed<'_>, point: Vec3, hit: &Hit, texel: f64) -> Option<
 
 #[test]
 fn shadows_of_polygons_are_those_of_rays() {
-    let _turn = gpu::turn();
     let volume = fog();
     let field = field_of(&volume);
     let splats = [splats(&volume)];
@@ -177,7 +176,6 @@ fn shadows_of_polygons_are_those_of_rays() {
 
 #[test]
 fn mixed_pictures_are_what_a_ray_marcher_makes_of_them() {
-    let _turn = gpu::turn();
     let volume = small_cloud();
     let field = field_of(&volume);
     let splats = [splats(&volume)];
@@ -236,7 +234,6 @@ fn mixed_pictures_are_what_a_ray_marcher_makes_of_them() {
 
 #[test]
 fn polygons_are_there_without_splats_and_meshes_without_triangles_are_refused() {
-    let _turn = gpu::turn();
     let [view, way] = directions(60.0);
     let meshes = meshes(view, way);
     let volume = fog();

@@ -2,7 +2,7 @@
 //! A small cloud in sheets of splats against an f64 ray marcher with the same optical model, for more and more sheets; with a
 //! transfer function that is no straight line; two clouds as one; and sheets from front to back against those from back to front.
 
-use crate::gpu::{self, gpu};
+use crate::gpu::gpu;
 use crate::sheet_scene::{self, directions, field_of, small_cloud};
 use crate::sheets::{Shot, colored, shoot, shoot_all, splats};
 use airlight::core::{Camera, Light, Transfer, TransferPoint};
@@ -50,7 +50,6 @@ fn differences<'a>(found: &Shot, truth: impl Iterator<Item = &'a [f64; 4]>) -> [
 
 #[test]
 fn a_cloud_is_what_a_ray_marcher_makes_of_it() {
-    let _turn = gpu::turn();
     let volume = small_cloud();
     let field = field_of(&volume);
     let splats = splats(&volume);
@@ -94,7 +93,6 @@ fn ramp([clear, opaque]: [f64; 2]) -> Transfer {
 /// thinner the sheets are.
 #[test]
 fn a_surface_in_a_cloud_is_what_a_ray_marcher_makes_of_it() {
-    let _turn = gpu::turn();
     let volume = small_cloud();
     let field = field_of(&volume);
     let splats = splats(&volume);
@@ -134,7 +132,6 @@ fn moved(volume: &Volume, by: glam::Vec3, share: f32) -> Volume {
 
 #[test]
 fn two_clouds_are_what_a_ray_marcher_makes_of_their_sum() {
-    let _turn = gpu::turn();
     let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));
     let small = cloud([20, 10, 18], 8);
     for (name, apart) in [("overlapping", 0.8_f32), ("side by side", 3.4)] {
@@ -192,7 +189,6 @@ fn part(volume: &Volume, from: u32, to: u32) -> Volume {
 
 #[test]
 fn a_cloud_in_two_halves_is_the_whole() {
-    let _turn = gpu::turn();
     let volume = small_cloud();
     let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));
     let halves = [part(&volume, 0, 13), part(&volume, 13, 32)].map(|half| splats(&half));
@@ -236,7 +232,6 @@ fn the_reference_has_converged() {
 
 #[test]
 fn front_to_back_agrees_with_back_to_front() {
-    let _turn = gpu::turn();
     let volume = small_cloud();
     let splats = splats(&volume);
     let transfer = colored(ALBEDO.map(|color| color.map(|x| x as f32).into()));

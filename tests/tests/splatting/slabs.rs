@@ -5,7 +5,7 @@
 use airlight::core::{Camera, DepthRange, Light, OrthographicView, PerspectiveView, Transfer, TransferPoint};
 use airlight::data::Volume;
 
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use airlight::splatting::{SheetFrame, SheetInputs, SheetLighting, SheetPicture, SheetSettings, Splats};
 use glam::{Mat4, Vec3};
 
@@ -50,7 +50,6 @@ fn transmitted(volume: &Volume, camera: Camera, light: Light, extinction: f32, c
 
 #[test]
 fn a_slab_lets_through_what_beer_and_lambert_say() {
-    let _turn = gpu::turn();
     // Wide enough that the ray at the steepest angle leaves by the large faces.
     let volume = slab([40, 12, 24]);
     let thickness = 12.0_f64;
@@ -106,7 +105,6 @@ fn a_slab_lets_through_what_beer_and_lambert_say() {
 /// lattice of the voxels.
 #[test]
 fn a_slab_at_any_tilt_to_the_sheets_lets_through_the_same() {
-    let _turn = gpu::turn();
     let mut volume = slab([40, 12, 40]);
     volume.world_from_unit = Mat4::from_rotation_y(0.3) * volume.world_from_unit;
     let mut worst = [0.0_f64; 2];
@@ -163,7 +161,6 @@ fn a_slab_at_any_tilt_to_the_sheets_lets_through_the_same() {
 
 #[test]
 fn a_perspective_camera_in_any_volume_sees_the_same() {
-    let _turn = gpu::turn();
     // Unequal, turned and skewed voxels; the ray through the middle of both large faces.
     let mut volume = slab([30, 16, 30]);
     let skew = Mat4::from_cols_array(&[

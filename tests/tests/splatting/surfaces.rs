@@ -2,7 +2,7 @@
 //! Surfaces in light that spreads: where it spreads by nothing they are lit as by hard light, an area light's penumbra on them has the width
 //! of the closed form, and scattered light gets behind them.
 
-use crate::gpu::{self, gpu, host_vector};
+use crate::gpu::{gpu, host_vector};
 use crate::sheet_scene::{camera, directions, light, small_cloud};
 use crate::sheets::{Shot, colored, metres, shoot_all, splats};
 use airlight::core::{Camera, DepthRange, Light, OrthographicView};
@@ -31,7 +31,6 @@ fn scattering(cone: f32, back: bool) -> LightTransport {
 
 #[test]
 fn light_that_spreads_by_nothing_is_hard() {
-    let _turn = gpu::turn();
     let size = [60, 40];
     let volume = small_cloud();
     let volumes = [splats(&volume)];
@@ -119,7 +118,6 @@ fn crossings(profile: &mut [(f32, f32)]) -> [f32; 3] {
 
 #[test]
 fn the_penumbra_of_a_half_plane_on_a_floor_has_its_width() {
-    let _turn = gpu::turn();
     // Over x < 0 at the height 0, 4 m above the floor. The floor is open: what no back follows is no solid.
     let depth = 4.0_f32;
     let meshes = [
@@ -127,57 +125,59 @@ fn the_penumbra_of_a_half_plane_on_a_floor_has_its_width() {
         plane(Vec2::splat(14.0), 1).transformed(Mat4::from_translation(Vec3::NEG_Y * depth)),
     ];
     let lights = [
-        (Light::directional(Vec3::Y, Vec3::ONE, Vec3::splat(-12.0), Vec3::splat(12.0)).unwrap(), 14.0_f32),
-        (Light::point(Vec3::Y * 9.0, Vec3::splat(100.0), 0.01, 0.1, 40.0).unwrap(), 2.4),
+        (
+            Light::directional(Vec3::Y, Vec3::ONE, Vec3::splat(-12.0), Vec3::splat(12.0)).unwrap(),
+            14.0_f32,
+            Vec3::new(-0.8, -0.6, 0.1),
+        ),
+        (
+            Light::point(Vec3::Y * 9.0, Vec3::splat(100.0), 0.01, 0.1, 40.0).unwrap(),
+            2.4,
+            Vec3::new(-0.6, -0.8, 0.0),
+        ),
     ];
-    for (light, size) in lights {
-        for direction in [Vec3::new(-0.6, -0.8, 0.0), Vec3::new(-0.8, -0.6, 0.1)] {
-            let direction = direction.normalize();
-            let (camera, points) = above(direction, -depth);
-            let lighting = SheetLighting { diffuse: 1.0, specular: 0.0, ..SheetLighting::new(1.0) };
-            let transport = LightTransport::Soft(SoftShadows::new(size));
-            let settings =
-                SheetSettings { count: 64, light_size: [384; 2], transport, ..SheetSettings::default() };
-            let picture = shot(&[], &meshes, settings, &SheetFrame { camera, light, lighting });
-            let mut profile = Vec::new();
-            for (pixel, point) in picture.picture.chunks_exact(4).zip(&points) {
-                if point.x.abs() > 2.4 || point.z.abs() > 1.5 {
-                    continue;
-                }
-                let to_light = light.position - *point;
-                let clear = if light.kind == 0 {
-                    1.0
-                } else {
-                    100.0 * to_light.normalize().y / (to_light.length_squared() + 1e-4)
-                };
-                profile.push((point.x, pixel[0] * std::f32::consts::PI / (clear * 0.5)));
+    for (light, size, direction) in lights {
+        let direction = direction.normalize();
+        let (camera, points) = above(direction, -depth);
+        let lighting = SheetLighting { diffuse: 1.0, specular: 0.0, ..SheetLighting::new(1.0) };
+        let transport = LightTransport::Soft(SoftShadows::new(size));
+        let settings =
+            SheetSettings { count: 64, light_size: [384; 2], transport, ..SheetSettings::default() };
+        let picture = shot(&[], &meshes, settings, &SheetFrame { camera, light, lighting });
+        let mut profile = Vec::new();
+        for (pixel, point) in picture.picture.chunks_exact(4).zip(&points) {
+            if point.x.abs() > 2.4 || point.z.abs() > 1.5 {
+                continue;
             }
-            // The albedo is that of the lit end.
-            let lit: Vec<f32> = profile.iter().filter(|at| at.0 > 2.0).map(|at| at.1).collect();
-            let full = lit.iter().sum::<f32>() / lit.len() as f32;
-            profile.iter_mut().for_each(|at| at.1 /= full);
-            let width = if light.kind == 0 {
-                2.0 * (0.5 * size.to_radians()).tan() * depth
+            let to_light = light.position - *point;
+            let clear = if light.kind == 0 {
+                1.0
             } else {
-                size * depth / 9.0
+                100.0 * to_light.normalize().y / (to_light.length_squared() + 1e-4)
             };
-            let [low, middle, high] = crossings(&mut profile);
-            let found = (high - low) / (0.8 * width);
-            println!(
-                "light {}, eye along {direction:.2}: width {found:.3}, middle off by {:.3} of it",
-                light.kind,
-                middle / width
-            );
-            assert!((found - 1.0).abs() < 0.1 && (middle / width).abs() < 0.06, "{found} {middle}");
-            let dark = profile.iter().filter(|at| at.0 < -width).map(|at| at.1).fold(0.0, f32::max);
-            assert!(dark < 0.03, "{dark}");
+            profile.push((point.x, pixel[0] * std::f32::consts::PI / (clear * 0.5)));
         }
+        // The albedo is that of the lit end.
+        let lit: Vec<f32> = profile.iter().filter(|at| at.0 > 2.0).map(|at| at.1).collect();
+        let full = lit.iter().sum::<f32>() / lit.len() as f32;
+        profile.iter_mut().for_each(|at| at.1 /= full);
+        let width =
+            if light.kind == 0 { 2.0 * (0.5 * size.to_radians()).tan() * depth } else { size * depth / 9.0 };
+        let [low, middle, high] = crossings(&mut profile);
+        let found = (high - low) / (0.8 * width);
+        println!(
+            "light {}, eye along {direction:.2}: width {found:.3}, middle off by {:.3} of it",
+            light.kind,
+            middle / width
+        );
+        assert!((found - 1.0).abs() < 0.1 && (middle / width).abs() < 0.06, "{found} {middle}");
+        let dark = profile.iter().filter(|at| at.0 < -width).map(|at| at.1).fold(0.0, f32::max);
+        assert!(dark < 0.03, "{dark}");
     }
 }
 
 #[test]
 fn what_lies_behind_a_surface_does_not_shade_it() {
-    let _turn = gpu::turn();
     let ball = [sphere(0.5, 96, 48).transformed(Mat4::from_translation(Vec3::Y * 0.9))];
     // A slab that lets nothing through, below the ball; rays past the ball's edge end in it.
     let mut slab = metres([40, 4, 40], |_| 1.0);
@@ -222,7 +222,6 @@ fn what_lies_behind_a_surface_does_not_shade_it() {
 
 #[test]
 fn scattered_light_gets_behind_surfaces() {
-    let _turn = gpu::turn();
     // A fog of 4 m about a plate of 1.6 m, over a floor.
     let mut fog = metres([20; 3], |_| 0.5);
     fog.world_from_unit = Mat4::from_scale(Vec3::splat(0.2)) * fog.world_from_unit;

@@ -2,7 +2,7 @@
 //! The eye turns once around a cloud that is lit from the side: sheets turn with it, and at right angles to the light they turn
 //! over. No picture may show when.
 
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::sheets::{colored, splats};
 use airlight::core::{Camera, DepthRange, Light, PerspectiveView};
 use airlight::data::{Volume, cloud};
@@ -128,7 +128,6 @@ fn roughness(means: &[f64]) -> [f64; 2] {
 
 #[test]
 fn the_eye_turns_and_nothing_pops() {
-    let _turn = gpu::turn();
     let volume = small_cloud();
     let splats = splats(&volume);
     let turn = Turn::new(&volume, &splats, COUNT);

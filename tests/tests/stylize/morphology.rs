@@ -72,7 +72,6 @@ fn compare(values: &[f32], size: [u32; 2], settings: MorphologySettings) {
 
 #[test]
 fn every_operator_equals_its_reference_everywhere() {
-    let _turn = gpu::turn();
     let mut random = Random(71);
     let sizes = [[1, 1], [1, 7], [9, 1], [2, 3], [13, 31], [64, 48], [128, 128]];
     for size in sizes {
@@ -105,7 +104,6 @@ fn large_maps() -> [(&'static str, Texture); 2] {
 
 #[test]
 fn every_operator_equals_its_reference_at_random_texels_of_large_maps() {
-    let _turn = gpu::turn();
     let mut random = Random(72);
     for (name, map) in large_maps() {
         let values = map.read(gpu()).unwrap();
@@ -134,7 +132,6 @@ fn every_operator_equals_its_reference_at_random_texels_of_large_maps() {
 
 #[test]
 fn closings_and_openings_keep_their_promises() {
-    let _turn = gpu::turn();
     let mut random = Random(73);
     let size = [97, 83];
     for element in ELEMENTS {
@@ -157,7 +154,6 @@ fn closings_and_openings_keep_their_promises() {
 
 #[test]
 fn holes_are_filled_up_to_the_width_of_the_kernel() {
-    let _turn = gpu::turn();
     let size = [64_u32, 64];
     for (element, hole) in [(Element::Box, 6_usize), (Element::Disc, 6)] {
         // A blocker with a square hole.
@@ -178,7 +174,6 @@ fn holes_are_filled_up_to_the_width_of_the_kernel() {
 
 #[test]
 fn impossible_maps_and_widths_are_errors() {
-    let _turn = gpu::turn();
     let some = settings(Operator::Closing, Element::Box, 5, DepthRange::Forward);
     let empty = Morphology::new(gpu(), shaders(), some, [0, 4]);
     assert!(matches!(empty, Err(StylizeError::Size { .. })));

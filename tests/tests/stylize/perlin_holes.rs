@@ -4,7 +4,7 @@
 //!
 //! `--nocapture` prints the measured figures next to their bounds.
 
-use crate::gpu::{Random, gpu, shaders, texture, turn};
+use crate::gpu::{Random, gpu, shaders, texture};
 use crate::holes::{Measured, correlation, draw_scene, measure, most_like};
 use airlight::Texture;
 use airlight::core::DepthRange;
@@ -44,7 +44,6 @@ fn measured(holes: &Holes, seeds: u32) -> Measured {
 
 #[test]
 fn noise_and_masks_are_those_of_the_reference() {
-    let _turn = turn();
     let mut random = Random(31);
     let size = [96, 64];
     for (octaves, persistence) in [(1, 0.5), (2, 1.0), (3, 0.0), (5, 0.5), (8, 0.7)] {
@@ -99,7 +98,6 @@ fn noise_and_masks_are_those_of_the_reference() {
 
 #[test]
 fn holes_have_the_area_and_size_that_were_asked_for() {
-    let _turn = turn();
     for octaves in [1, 3, 5] {
         for density in [0.05, 0.1, 0.2, 0.3, 0.5, 0.7] {
             let holes = Holes { size: 12.0, density, octaves, ..Holes::default() };
@@ -114,7 +112,6 @@ fn holes_have_the_area_and_size_that_were_asked_for() {
 
 #[test]
 fn other_persistences_sizes_and_motions_keep_the_promise() {
-    let _turn = turn();
     // Cells of the finest octave are at least three texels: of smaller ones a map misses the shortest chords.
     let still = Holes { density: 0.2, ..Holes::default() };
     let moving = |distance| HoleMotion { distance, ..HoleMotion::default() };
@@ -137,7 +134,6 @@ fn other_persistences_sizes_and_motions_keep_the_promise() {
 
 #[test]
 fn more_density_only_adds_holes_and_the_ends_are_none_and_all() {
-    let _turn = turn();
     let of = |density, seed| {
         pattern(&Holes { size: 9.0, density, seed, ..Holes::default() }, SIDE).at(0.0).unwrap()
     };
@@ -157,7 +153,6 @@ fn more_density_only_adds_holes_and_the_ends_are_none_and_all() {
 
 #[test]
 fn equal_input_gives_equal_bits_and_another_seed_other_holes() {
-    let _turn = turn();
     let motion = HoleMotion { distance: 5.0, ..HoleMotion::default() };
     let of = |seed| {
         pattern(&Holes { size: 9.0, density: 0.3, seed, motion, ..Holes::default() }, SIDE).at(9.0).unwrap()
@@ -181,7 +176,6 @@ fn punch(parameters: &HoleParameters, object: &Texture, rest: Option<&Texture>) 
 
 #[test]
 fn holes_are_far_and_everything_else_keeps_its_depth() {
-    let _turn = turn();
     let size = [70, 45];
     let count = (size[0] * size[1]) as usize;
     let mut random = Random(33);
@@ -217,7 +211,6 @@ fn holes_are_far_and_everything_else_keeps_its_depth() {
 
 #[test]
 fn discarding_fragments_is_punching_the_map_of_the_object() {
-    let _turn = turn();
     let size = [160, 120];
     let motion = HoleMotion { distance: 4.0, ..HoleMotion::default() };
     let holes = Holes { size: 8.0, density: 0.35, octaves: 4, motion, ..Holes::default() };
@@ -238,7 +231,6 @@ fn discarding_fragments_is_punching_the_map_of_the_object() {
 
 #[test]
 fn masks_change_smoothly_and_in_proportion_to_time() {
-    let _turn = turn();
     for (octaves, distance) in [(1, 8.0), (3, 16.0), (5, 24.0)] {
         let motion = HoleMotion { distance, turn: 1.5, pace: 0.5 };
         let holes = Holes { size: 16.0, density: 0.25, octaves, motion, ..Holes::default() };
@@ -280,7 +272,6 @@ fn masks_change_smoothly_and_in_proportion_to_time() {
 
 #[test]
 fn masks_do_not_merely_translate() {
-    let _turn = turn();
     for (octaves, distance) in [(1, 12.0), (3, 16.0), (5, 24.0)] {
         let motion = HoleMotion { distance, turn: 1.5, pace: 0.5 };
         let holes = Holes { size: 12.0, density: 0.25, octaves, motion, ..Holes::default() };
@@ -316,7 +307,6 @@ fn masks_do_not_merely_translate() {
 
 #[test]
 fn what_cannot_be_is_refused() {
-    let _turn = turn();
     let parameters = pattern(&Holes { size: 9.0, ..Holes::default() }, SIDE).at(0.0).unwrap();
     let bad = HoleParameters { octaves: 0, ..parameters };
     assert!(matches!(

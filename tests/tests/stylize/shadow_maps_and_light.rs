@@ -28,7 +28,6 @@ fn darker(lighter: &[f32], darker: &[f32]) -> f64 {
 
 #[test]
 fn light_in_the_air_follows_the_shadow_map() {
-    let _turn = gpu::turn();
     let scene = gpu::small_tree();
     let stage = scene.stage(PICTURE, MAP);
     let settings = Settings {

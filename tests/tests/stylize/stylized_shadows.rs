@@ -128,7 +128,6 @@ fn styled(
 
 #[test]
 fn every_view_is_changed_as_it_would_be_alone() {
-    let _turn = gpu::turn();
     let raster = raster();
     for (light, cascades, count) in [(point(), None, 6), (sun(), Some(Cascades::new(3)), 3)] {
         let stage = stage(&raster, &both(), light, cascades);
@@ -159,7 +158,6 @@ fn pattern(matrix: &Mat4, seed: u32) -> HoleParameters {
 
 #[test]
 fn holes_are_made_in_one_object_alone() {
-    let _turn = gpu::turn();
     let raster = raster();
     for light in [point(), sun()] {
         let stage = stage(&raster, &both(), light, None);
@@ -203,7 +201,6 @@ fn holes_are_made_in_one_object_alone() {
 
 #[test]
 fn a_matrix_and_a_set_of_holes_is_wanted_for_each_map() {
-    let _turn = gpu::turn();
     let raster = raster();
     let stage = stage(&raster, &both(), point(), None);
     let matrices = StylizedShadows::matrices(&stage.light, stage.views.as_ref());

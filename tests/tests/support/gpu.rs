@@ -27,7 +27,7 @@ use airlight_tests::reference::camera::{self, Camera as ReferenceCamera};
 use airlight_tests::reference::scattering as reference;
 use glam::{Mat4, Vec2, Vec3};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 static GPU: OnceLock<Gpu> = OnceLock::new();
 static RECORDER: OnceLock<Arc<Recorder>> = OnceLock::new();
@@ -69,12 +69,6 @@ impl Drop for Settled {
         gpu.queue.submit([]);
         let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
     }
-}
-
-/// One test at a time: a software adapter shares the cores with the references, and both use all of them.
-pub fn turn() -> MutexGuard<'static, ()> {
-    static TURN: Mutex<()> = Mutex::new(());
-    TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The shaders under test: those that ship, or a mutation of them.

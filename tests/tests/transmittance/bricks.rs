@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Passing over empty bricks changes neither a map nor a picture.
 
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use airlight::core::{Bricks, Camera, DepthRange, Light, PerspectiveView, Reading, VolumeTexture};
 use airlight::data::Volume;
 use airlight::transmittance::{
@@ -77,7 +77,6 @@ fn greatest(a: &[f32], b: &[f32]) -> f32 {
 
 #[test]
 fn maps_and_pictures_are_the_same_with_bricks_and_without() {
-    let _turn = gpu::turn();
     let volume = volume();
     for reading in [Reading::Linear, Reading::Nearest] {
         let plain = VolumeTexture::new(gpu(), &volume, 1.0, reading).unwrap();

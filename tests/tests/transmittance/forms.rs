@@ -4,7 +4,7 @@
 //!
 //! `--nocapture` prints the table.
 
-use crate::gpu::{self, Random};
+use crate::gpu::Random;
 use crate::probing::hold;
 use crate::rays::{Medium, RANGE, Rays, ask, light_along_z, medium};
 use airlight::transmittance::{Form, MapSettings, Precision};
@@ -98,7 +98,6 @@ fn budget(form: Form) -> (f64, f64) {
 
 #[test]
 fn every_form_is_its_reference_and_reaches_what_it_can() {
-    let _turn = gpu::turn();
     let mut extinctions = media::table();
     let count = extinctions.len();
     // A power of two: the march takes steps of the shortest side of a voxel, a column's width here, and is exact where a whole
@@ -161,7 +160,6 @@ fn every_form_is_its_reference_and_reaches_what_it_can() {
 /// Between texels whose intervals differ: the mean of their transmittances.
 #[test]
 fn intervals_are_not_mixed_but_transmittances_are() {
-    let _turn = gpu::turn();
     let mut random = Random(77);
     let extinctions = (0..64).map(|i| medium(Medium::ShortBoxes, LENGTH, [4.0, 16.0][i % 2], &mut random));
     let rays = Rays { extinctions: extinctions.collect() };
@@ -196,7 +194,6 @@ fn intervals_are_not_mixed_but_transmittances_are() {
 
 #[test]
 fn half_floats_are_filtered_as_single_ones_are_mixed() {
-    let _turn = gpu::turn();
     let mut random = Random(78);
     let extinctions = (0..64).map(|_| medium(Medium::Smoke, LENGTH, 3.0, &mut random));
     let rays = Rays { extinctions: extinctions.collect() };
@@ -221,7 +218,6 @@ fn half_floats_are_filtered_as_single_ones_are_mixed() {
 
 #[test]
 fn two_thin_sheets_are_exact_with_moments_alone() {
-    let _turn = gpu::turn();
     let mut random = Random(5);
     let length = 1024;
     let places: Vec<[usize; 2]> = (0..24)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures of particles that are lit through transmittance maps, against sorted blending in f64.
 
-use crate::gpu::{self, Random};
+use crate::gpu::Random;
 use crate::media::{PIXELS, Setting, lighting, orthographic, perspective, split};
 use crate::probing::hold;
 use airlight::core::{DepthRange, View};
@@ -30,7 +30,6 @@ fn balls(particles: &Particles) -> Vec<Ball> {
 
 #[test]
 fn particles_are_blended_as_in_f64_in_any_order() {
-    let _turn = gpu::turn();
     let mut particles = burst(400, 5);
     // None so small that it is widened.
     particles.list.iter_mut().for_each(|particle| particle.radius = particle.radius.max(0.15));
@@ -71,7 +70,6 @@ fn particles_are_blended_as_in_f64_in_any_order() {
 
 #[test]
 fn the_reference_sums_over_all_particles() {
-    let _turn = gpu::turn();
     let mut particles = burst(400, 5);
     particles.list.iter_mut().for_each(|particle| particle.radius = particle.radius.max(0.15));
     let balls = balls(&particles);
@@ -103,7 +101,6 @@ fn the_reference_sums_over_all_particles() {
 /// Balls far below a pixel are widened: what they send in all stays.
 #[test]
 fn the_smallest_particles_keep_what_they_send() {
-    let _turn = gpu::turn();
     let settings = MapSettings::new(Form::Extinction, 4, [64, 64]);
     let mut random = Random(4);
     for view in [
@@ -132,7 +129,6 @@ fn the_smallest_particles_keep_what_they_send() {
 
 #[test]
 fn wild_particles_leave_no_trace_and_wild_depths_are_far() {
-    let _turn = gpu::turn();
     let clean = burst(60, 2);
     let mut wild = clean.clone();
     for value in [f32::NAN, f32::INFINITY, -1.0, 1e30, 3e38] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Particles splatted into transmittance maps: against stretches of balls in f64, in any order, and what is dropped.
 
-use crate::gpu::{self, Random, gpu, shaders};
+use crate::gpu::{Random, gpu, shaders};
 use crate::probing::hold;
 use crate::rays::{HALF, RANGE, ask, light_along_z};
 use airlight::data::{Particle, Particles, burst};
@@ -89,7 +89,6 @@ fn shuffled(particles: &Particles, seed: u64) -> Particles {
 
 #[test]
 fn balls_are_the_series_of_their_chords() {
-    let _turn = gpu::turn();
     let particles = balls(250, 21);
     let mut random = Random(8);
     let texels: Vec<[usize; 2]> = (0..150).map(|_| [random.below(64), random.below(64)]).collect();
@@ -131,7 +130,6 @@ fn balls_are_the_series_of_their_chords() {
 
 #[test]
 fn fixed_point_does_not_know_the_order() {
-    let _turn = gpu::turn();
     let particles = burst(3000, 4);
     let forms = [
         (Form::Extinction, 4),
@@ -156,7 +154,6 @@ fn fixed_point_does_not_know_the_order() {
 
 #[test]
 fn more_particles_than_a_row_of_workgroups_count_once_each() {
-    let _turn = gpu::turn();
     let few = balls(5, 12);
     // Clear balls before them fill the row of 65535 workgroups; the rest of the next row has no particle.
     let clear = few.list.iter().map(|ball| Particle { extinction: 0.0, ..*ball });
@@ -175,7 +172,6 @@ fn more_particles_than_a_row_of_workgroups_count_once_each() {
 
 #[test]
 fn blending_changes_by_half_a_unit_a_particle_at_most() {
-    let _turn = gpu::turn();
     let particles = balls(150, 31);
     for count in [4, 16] {
         let of = |particles: &Particles| {
@@ -205,7 +201,6 @@ fn blending_changes_by_half_a_unit_a_particle_at_most() {
 
 #[test]
 fn what_cannot_be_is_dropped_and_counted() {
-    let _turn = gpu::turn();
     let good = balls(20, 41);
     let fine = Particle { position: Vec3::ZERO, radius: 0.5, extinction: 1.0 };
     let with = |change: fn(&mut Particle)| {
@@ -260,7 +255,6 @@ fn what_cannot_be_is_dropped_and_counted() {
 
 #[test]
 fn small_balls_keep_their_extinction() {
-    let _turn = gpu::turn();
     let mut random = Random(51);
     let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
     for _ in 0..60 {
@@ -283,7 +277,6 @@ fn small_balls_keep_their_extinction() {
 
 #[test]
 fn impossible_splats_are_errors_and_overflows_are_counted() {
-    let _turn = gpu::turn();
     for form in [Form::Function, Form::FunctionPeriodic] {
         let fixed = SplatFixed::new(gpu(), shaders(), settings(form, 4, Precision::Single));
         assert!(matches!(fixed, Err(TransmittanceError::Splat(..))));

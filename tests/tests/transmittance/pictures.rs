@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures of volumes that are lit through transmittance maps, against marches in f64, closed forms and energy.
 
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::media::{PIXELS, SIZE, Setting, bounds, lighting, orthographic, perspective, split};
 use crate::probing::hold;
 use airlight::core::{DepthRange, Reading, VolumeTexture, VolumeTextureError};
@@ -28,7 +28,6 @@ fn a_cloud() -> (Volume, Setting) {
 /// A cloud under light from above, where most of the map's range is cloud, of an optical depth of 3 and of 10.
 #[test]
 fn a_cloud_through_maps_is_the_march_in_f64() {
-    let _turn = gpu::turn();
     let thin = [(Form::Extinction, 4, 0.03), (Form::Extinction, 16, 0.015), (Form::Bounded, 4, 0.015)];
     let dense = [(Form::Extinction, 16, 0.015), (Form::Bounded, 8, 0.015)];
     for (density, maps) in [(0.3, &thin[..]), (1.0, &dense[..])] {
@@ -56,7 +55,6 @@ fn a_cloud_through_maps_is_the_march_in_f64() {
 /// depth 10 within an eighth of the range is beyond four cosines.
 #[test]
 fn a_dense_cloud_under_a_slanting_light_wants_bounded_maps() {
-    let _turn = gpu::turn();
     let (volume, setting) = a_cloud();
     let (radiance, _) = split(&setting.marched(&volume, true));
     let of = |what: &str, map: Option<MapSettings>| {
@@ -74,7 +72,6 @@ fn a_dense_cloud_under_a_slanting_light_wants_bounded_maps() {
 
 #[test]
 fn surfaces_cut_the_medium_before_any_camera() {
-    let _turn = gpu::turn();
     let (volume, _) = a_cloud();
     let views = [
         perspective(Vec3::new(1.0, 3.0, 7.0), DepthRange::Reversed),
@@ -109,7 +106,6 @@ fn surfaces_cut_the_medium_before_any_camera() {
 
 #[test]
 fn an_even_box_is_its_closed_form() {
-    let _turn = gpu::turn();
     let extinction = 0.8_f64;
     let values = vec![extinction as f32; 512];
     let space = Mat4::from_translation(Vec3::NEG_ONE) * Mat4::from_scale(Vec3::splat(2.0));
@@ -137,7 +133,6 @@ fn an_even_box_is_its_closed_form() {
 /// Thin, of albedo 1 and without preference: over the sphere it sends what it takes from the light.
 #[test]
 fn a_thin_medium_scatters_what_it_takes() {
-    let _turn = gpu::turn();
     let mut volume = cloud([20, 12, 16], 3);
     let voxel: f64 = volume.world_from_unit.determinant().abs().into();
     let voxel = voxel / f64::from(20 * 12 * 16);
@@ -158,7 +153,6 @@ fn a_thin_medium_scatters_what_it_takes() {
 
 #[test]
 fn wild_values_and_depths_give_finite_pictures() {
-    let _turn = gpu::turn();
     let (mut volume, mut setting) = a_cloud();
     for (i, value) in volume.values.iter_mut().enumerate().step_by(7) {
         *value = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -3e38, 60000.0][i / 7 % 5];
@@ -174,7 +168,6 @@ fn wild_values_and_depths_give_finite_pictures() {
 
 #[test]
 fn compute_is_the_same_picture_and_it_goes_over_a_background() {
-    let _turn = gpu::turn();
     let (volume, setting) = a_cloud();
     let drawn = setting.volume(&volume, Reading::Linear, None);
     let uploaded = VolumeTexture::new(gpu(), &volume, 1.0, Reading::Linear).unwrap();
@@ -214,7 +207,6 @@ fn compute_is_the_same_picture_and_it_goes_over_a_background() {
 
 #[test]
 fn impossible_pictures_are_errors() {
-    let _turn = gpu::turn();
     for (albedo, g, limit, name) in [
         (1.1, 0.0, 10.0, "albedo"),
         (f32::NAN, 0.0, 10.0, "albedo"),

@@ -2,7 +2,7 @@
 //! Extinction transmittance maps of volumes: closed forms of slabs and boxes, ends, the monotone window, places outside,
 //! bad input.
 
-use crate::gpu::{self, Random, gpu, shaders};
+use crate::gpu::{Random, gpu, shaders};
 use crate::probing::hold;
 use crate::rays::{Medium, RANGE, Rays, ask, light_along_z, medium};
 use airlight::core::{Light, Reading, VolumeTexture};
@@ -61,7 +61,6 @@ fn depths() -> Vec<f64> {
 
 #[test]
 fn slabs_and_boxes_are_their_truncated_series_in_closed_form() {
-    let _turn = gpu::turn();
     let slabs = slabs();
     let rays = Rays { extinctions: slabs.iter().map(Slab::ray).collect() };
     let depths = depths();
@@ -97,7 +96,6 @@ fn slabs_and_boxes_are_their_truncated_series_in_closed_form() {
 
 #[test]
 fn an_even_slab_over_the_range_is_exact() {
-    let _turn = gpu::turn();
     let slab = Slab { from: 0, to: LENGTH, total: 5.0 };
     let rays = Rays { extinctions: vec![slab.ray()] };
     for form in [Form::Extinction, Form::Bounded, Form::Opacity] {
@@ -112,7 +110,6 @@ fn an_even_slab_over_the_range_is_exact() {
 
 #[test]
 fn the_monotone_window_never_rises_and_the_plain_series_does() {
-    let _turn = gpu::turn();
     let mut random = Random(11);
     let kinds = [Medium::Smoke, Medium::Boxes];
     let extinctions =
@@ -133,7 +130,6 @@ fn the_monotone_window_never_rises_and_the_plain_series_does() {
 
 #[test]
 fn depth_may_run_either_way_and_places_outside_are_lit() {
-    let _turn = gpu::turn();
     let rays = Rays { extinctions: vec![Slab { from: 8, to: 24, total: 1.5 }.ray(); 3] };
     let inside = [rays.point(1, 0.3), rays.point(2, 0.8)];
     let outside = [
@@ -164,7 +160,6 @@ fn depth_may_run_either_way_and_places_outside_are_lit() {
 
 #[test]
 fn wild_values_leave_no_trace() {
-    let _turn = gpu::turn();
     let clean = Slab { from: 10, to: 30, total: 1.0 }.ray();
     let mut wild = clean.clone();
     for (i, value) in [f32::NAN, f32::INFINITY, -1.0, f32::NEG_INFINITY].into_iter().enumerate() {
@@ -185,7 +180,6 @@ fn wild_values_leave_no_trace() {
 /// Turned volumes under a slanting light, trilinear: against a march in f64 through the same values.
 #[test]
 fn a_cloud_and_a_plume_under_a_slanting_light_are_marched_truly() {
-    let _turn = gpu::turn();
     let mut random = Random(3);
     let media = [
         ("cloud", cloud([40, 24, 32], 9), [[3e-3, 0.025], [3e-3, 0.025]]),
@@ -241,7 +235,6 @@ fn a_cloud_and_a_plume_under_a_slanting_light_are_marched_truly() {
 /// beside it everything is as it was.
 #[test]
 fn a_fitted_range_leaves_nothing_out() {
-    let _turn = gpu::turn();
     let mut random = Random(17);
     for (name, mut volume) in [("cloud", cloud([40, 24, 32], 9)), ("plume", plume([32, 80, 32], 9))] {
         volume.world_from_unit = Mat4::from_rotation_y(0.6) * volume.world_from_unit;
@@ -282,7 +275,6 @@ fn a_fitted_range_leaves_nothing_out() {
 /// A ball in a map that is as large as it: its chord in closed form before, in and behind it.
 #[test]
 fn a_ball_in_a_fitted_map_is_its_chord() {
-    let _turn = gpu::turn();
     let balls = [Particle { position: Vec3::new(1.0, 2.0, -1.0), radius: 0.5, extinction: 1.6 }];
     let particles = Particles { list: balls.to_vec() };
     let light =
@@ -354,7 +346,6 @@ fn trilinear(volume: &Volume, unit: [f64; 3]) -> f64 {
 
 #[test]
 fn impossible_maps_are_errors() {
-    let _turn = gpu::turn();
     let light = light_along_z(1.0);
     let of = |form, coefficients, size, precision| {
         let settings = MapSettings { precision, ..MapSettings::new(form, coefficients, size) };

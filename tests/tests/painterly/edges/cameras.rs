@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Cameras inside of what they see, and parallel rays.
 
-use crate::gpu::{self, vector};
+use crate::gpu::vector;
 use crate::probing::{f, triple};
 use crate::surfaces::{PLAIN, Setting, hits_are_crossings, parallel_view_of};
 use airlight::core::{DepthRange, PerspectiveView, View};
@@ -16,7 +16,6 @@ pub fn inside(eye: Vec3, target: Vec3) -> View {
 
 #[test]
 fn cameras_may_be_inside() {
-    let _turn = gpu::turn();
     let volume = torus_field([40; 3], 0.55, 0.2);
     // In the hole of the ring, where nothing is solid.
     let mut setting =
@@ -37,7 +36,6 @@ fn cameras_may_be_inside() {
 
 #[test]
 fn parallel_rays_are_those_of_an_eye_afar() {
-    let _turn = gpu::turn();
     let volume = torus_field([40; 3], 0.55, 0.25);
     let towards = Vec3::new(0.3, 0.6, 1.0).normalize();
     let parallel = parallel_view_of(&volume, towards, DepthRange::Forward);

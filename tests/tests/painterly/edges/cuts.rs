@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Clip planes and the faces of the volume: where rays enter and leave.
 
-use crate::gpu::{self, vector};
+use crate::gpu::vector;
 use crate::probing::{hold, triple};
 use crate::surfaces::{PLAIN, Setting, hits_are_crossings, parallel_view_of, view_of};
 use airlight::core::DepthRange;
@@ -11,7 +11,6 @@ use glam::{Mat4, Vec3, Vec4};
 
 #[test]
 fn clip_planes_and_limits_cut() {
-    let _turn = gpu::turn();
     let volume = sphere_field([40; 3], 0.7);
     let eye = Vec3::new(0.5, 0.4, 1.0);
     for view in [view_of(&volume, eye), parallel_view_of(&volume, eye, DepthRange::Forward)] {
@@ -69,7 +68,6 @@ fn cap_errors(setting: &Setting, surface: &[f32], distance: &[f32]) -> Vec<f64> 
 
 #[test]
 fn rays_that_enter_by_a_face_have_its_normal() {
-    let _turn = gpu::turn();
     let mut volume = sphere_field([24, 20, 16], 1.3);
     let turn = Mat4::from_rotation_z(0.4) * Mat4::from_rotation_y(0.5);
     volume.world_from_unit = turn * volume.world_from_unit;
@@ -103,7 +101,6 @@ fn rays_that_enter_by_a_face_have_its_normal() {
 /// Rays along a plane are cut away whole or not at all.
 #[test]
 fn rays_along_a_clip_plane_are_cut_by_sides() {
-    let _turn = gpu::turn();
     let volume = sphere_field([40; 3], 0.7);
     let mut setting = Setting::new(volume.clone(), &parallel_view_of(&volume, Vec3::Z, DepthRange::Forward));
     let whole = setting.seen(PLAIN);
@@ -118,7 +115,6 @@ fn rays_along_a_clip_plane_are_cut_by_sides() {
 /// Solid is only the last half voxel before rays leave.
 #[test]
 fn the_last_sample_lies_where_rays_leave() {
-    let _turn = gpu::turn();
     let values = (0..400).map(|i| 1.0 - (i / 16) as f32 / 24.0).collect();
     let volume = Volume::new([4, 4, 25], values, sphere_field([1; 3], 0.5).world_from_unit).unwrap();
     let mut setting = Setting::new(volume.clone(), &parallel_view_of(&volume, Vec3::Z, DepthRange::Forward));

@@ -2,7 +2,7 @@
 //! Wild voxels, thin volumes, nothing solid, other forms of the pass, and surfaces that are refused.
 
 use super::cameras::inside;
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::probing::hold;
 use crate::surfaces::{PLAIN, SIZE, Setting, hits_are_crossings, view_of};
 use airlight::core::{Jitter, Transfer, TransferError};
@@ -13,7 +13,6 @@ use glam::{Mat4, Vec3, Vec4};
 
 #[test]
 fn wild_and_thin_volumes_give_finite_pictures() {
-    let _turn = gpu::turn();
     let volume = torus_field([40; 3], 0.55, 0.2);
     let view = view_of(&volume, Vec3::new(0.5, 0.4, 1.0));
     let mut wild = volume.clone();
@@ -54,7 +53,6 @@ fn wild_and_thin_volumes_give_finite_pictures() {
 
 #[test]
 fn nothing_solid_is_an_empty_picture() {
-    let _turn = gpu::turn();
     let volume = sphere_field([24; 3], 0.7);
     let mut setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::new(0.5, 0.4, 1.0)));
     setting.table = vec![[1.0, 1.0, 1.0, 0.4]; 3];
@@ -73,7 +71,6 @@ fn nothing_solid_is_an_empty_picture() {
 
 #[test]
 fn other_forms_see_the_same() {
-    let _turn = gpu::turn();
     let volume = torus_field([40; 3], 0.55, 0.2);
     let mut setting = Setting::new(volume.clone(), &view_of(&volume, Vec3::new(0.5, 0.4, 1.0)));
     setting.lighting.specular = 0.6;
@@ -98,7 +95,6 @@ fn other_forms_see_the_same() {
 
 #[test]
 fn impossible_surfaces_are_errors() {
-    let _turn = gpu::turn();
     use PainterlyError as E;
     use TransferError as T;
     for (settings, name) in [

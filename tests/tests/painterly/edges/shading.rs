@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Lighting and occlusion of surfaces.
 
-use crate::gpu::{self, Probe, Random};
+use crate::gpu::{Probe, Random};
 use crate::probing::{self, f, hold, worst};
 use crate::surfaces::{SIZE, Setting, parallel_view_of, view_of};
 use airlight::core::DepthRange;
@@ -11,7 +11,6 @@ use glam::Vec3;
 
 #[test]
 fn light_is_phong_s() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::painterly::iso_surface::{SurfaceLighting, phong}",
         body: "let lighting = SurfaceLighting(
@@ -50,7 +49,6 @@ fn light_is_phong_s() {
 /// pixels may have; and a pixel's side is that of projected points.
 #[test]
 fn occlusion_is_told_by_distances() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::painterly::iso_surface::{distance_tolerance, is_occluded}",
         body: "let tolerance = distance_tolerance(input(0u), input(1u), 1.0, 0.0);

@@ -110,7 +110,6 @@ fn rows(random: &mut Random, width: usize) -> Vec<Vec<f32>> {
 
 #[test]
 fn filter_writes_prefix_means() {
-    let _turn = gpu::turn();
     let mut random = Random(404);
     let medium = Medium::new(0.05, Vec3::ONE, 0.0, 100.0).unwrap();
     let (mut plain, mut weighted) = ([0.0_f64; 6], [0.0_f64; 6]);
@@ -163,7 +162,6 @@ fn filter_writes_prefix_means() {
 
 #[test]
 fn reads_are_nearest_or_bilinear() {
-    let _turn = gpu::turn();
     let mut random = Random(405);
     for [width, height] in [[37, 9], [1, 1], [2, 1], [1, 5]] {
         let depths: Vec<f32> = (0..width * height)

@@ -20,7 +20,6 @@ struct Errors {
 
 #[test]
 fn errors_on_scenes_are_those_of_the_book() {
-    let _turn = gpu::turn();
     // Bounds of the mean errors of plain means and of means by transmittance, and of the greatest of either.
     for (name, means, greatest) in [
         ("foliage", [0.0107, 0.0101], 0.2),
@@ -93,7 +92,6 @@ fn picture(inputs: &Inputs<'_>, settings: Settings) -> (Vec<f32>, Rectification)
 
 #[test]
 fn pictures_are_near_the_exact_ones() {
-    let _turn = gpu::turn();
     let reads = [Filtering::Linear, Filtering::Nearest];
     let mut failures = Vec::new();
     // Bounds of the mean errors of plain means and of means by transmittance; of the greatest error; and of the relative
@@ -143,7 +141,6 @@ fn pictures_are_near_the_exact_ones() {
 
 #[test]
 fn no_permutation_gives_nan_or_a_value_out_of_range() {
-    let _turn = gpu::turn();
     for scene in [gpu::torus_over_plane(), gpu::small_tree()] {
         let stage = scene.stage(PICTURE, [512, 512]);
         for index in 0..16 {

@@ -121,7 +121,6 @@ fn weights_of_kind(random: &mut Random, kind: usize, width: usize) -> Vec<[f32; 
 
 #[test]
 fn filter_takes_weights_and_fall_offs() {
-    let _turn = gpu::turn();
     let mut random = Random(411);
     for colors in [1, 3] {
         let pass = filter(colors);
@@ -173,7 +172,6 @@ fn filter_takes_weights_and_fall_offs() {
 
 #[test]
 fn reads_of_colours_mix_fall_off_times_moments() {
-    let _turn = gpu::turn();
     let mut random = Random(412);
     for (colors, [width, height]) in [(3, [37, 9]), (1, [37, 9]), (3, [1, 1]), (3, [1, 5])] {
         let rows = rows(&mut random, height, width);

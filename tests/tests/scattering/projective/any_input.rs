@@ -15,7 +15,6 @@ use wgpu::TextureFormat::R32Float;
 
 #[test]
 fn an_orthographic_camera_is_refused_where_rays_begin_at_the_eye() {
-    let _turn = gpu::turn();
     let level = orthographic(&mut Random(5), 1.5);
     let light = gpu::host_vector(level.right + level.forward * 0.2);
     let rows = projective_rows(&host_camera(&level, [96, 64]), light, LIMIT, 1).unwrap();
@@ -30,7 +29,6 @@ fn an_orthographic_camera_is_refused_where_rays_begin_at_the_eye() {
 
 #[test]
 fn no_camera_light_or_input_gives_nan_or_a_value_out_of_range() {
-    let _turn = gpu::turn();
     const SMALL: [u32; 2] = [16, 8];
     let mut random = Random(77);
     let depth = gpu::texture(SMALL, R32Float, &[1.0; 128]);

@@ -12,7 +12,6 @@ use wgpu::TextureFormat::R32Float;
 
 #[test]
 fn a_row_lit_up_to_a_column_has_its_closed_form() {
-    let _turn = gpu::turn();
     // A narrow view, so that all rays of a row are nearly as long as its reference ray.
     let view = PerspectiveView {
         eye: Vec3::new(1.0, 2.0, -3.0),

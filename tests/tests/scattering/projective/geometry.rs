@@ -152,7 +152,6 @@ fn view_rays_are_rows_light_rays_columns_and_all_of_the_frustum_is_inside() {
 
 #[test]
 fn shader_places_points_and_rays_as_the_reference_does() {
-    let _turn = gpu::turn();
     let mut random = Random(43);
     let cases = cases(500);
     let head = format!(

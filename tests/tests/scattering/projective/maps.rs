@@ -12,7 +12,6 @@ use glam::{Mat4, Vec2, Vec3};
 
 #[test]
 fn resampled_maps_are_those_of_the_reference() {
-    let _turn = gpu::turn();
     for (name, stage, splits) in [
         ("foliage", gallery("foliage"), 3),
         ("plane", gallery("plane"), 1),
@@ -43,7 +42,6 @@ fn resampled_maps_are_those_of_the_reference() {
 
 #[test]
 fn drawn_maps_are_the_resampled_ones() {
-    let _turn = gpu::turn();
     for (name, mut stage) in
         [("terrain", gallery("terrain")), ("torus", gallery("torus")), ("orthographic", level_foliage())]
     {
@@ -89,7 +87,6 @@ fn drawn_maps_are_the_resampled_ones() {
 
 #[test]
 fn blockers_outside_of_the_frustum_cast_shadows() {
-    let _turn = gpu::turn();
     // A plate high above the picture, and one far below it that casts none.
     let mut mesh = plane(Vec2::splat(3.0), 1).transformed(Mat4::from_translation(Vec3::new(0.0, 40.0, 0.0)));
     mesh.append(&plane(Vec2::splat(60.0), 1).transformed(Mat4::from_translation(Vec3::Y * -40.0)));

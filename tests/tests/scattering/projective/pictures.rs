@@ -14,7 +14,6 @@ use airlight_tests::reference::scattering as reference;
 
 #[test]
 fn marched_rows_are_the_exact_sums() {
-    let _turn = gpu::turn();
     for (name, stage, splits) in [("foliage", gallery("foliage"), 3), ("orthographic", level_foliage(), 1)] {
         let map = stage.map([384, 512], splits);
         let exact = stage.exact(&map.rectified, splits);
@@ -45,7 +44,6 @@ fn six_ways(map: [u32; 2]) -> [ProjectivePrefiltered; 6] {
 
 #[test]
 fn pictures_reach_their_figures() {
-    let _turn = gpu::turn();
     let mut failures = Vec::new();
     // Splits of three need columns that they divide.
     let [even, of_three] = [[512, 512], [513, 512]].map(six_ways);
@@ -94,7 +92,6 @@ fn pictures_reach_their_figures() {
 
 #[test]
 fn pictures_of_an_orthographic_camera_reach_their_figures() {
-    let _turn = gpu::turn();
     let stage = level_foliage();
     // The map is that of the rows, whatever is made of it.
     let map = stage.map([1024, 512], 1).rectified;
@@ -129,7 +126,6 @@ fn pictures_of_an_orthographic_camera_reach_their_figures() {
 
 #[test]
 fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
-    let _turn = gpu::turn();
     const SMALL: [u32; 2] = [192, 108];
     let (mut compared, mut failures) = ([0; 2], Vec::new());
     for name in ["foliage", "terrain", "torus", "plane"] {
@@ -188,7 +184,6 @@ fn oblique_rows_are_as_good_as_slices_up_to_the_limit_of_the_choice() {
 
 #[test]
 fn regions_and_near_planes_keep_the_figures() {
-    let _turn = gpu::turn();
     let scene = scenes::scene("terrain").unwrap().unwrap();
     let mut view = scene.view.perspective().unwrap();
     // A near plane that matters, and air in which the reference ray of a row is far from some of its rays.

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Steps of depth, and counts against brute force over the stepped map.
 
-use crate::gpu::{self, Probe, Random};
+use crate::gpu::{Probe, Random};
 use crate::rank_rows::{self, clear_of_borders};
 use airlight::scattering::Visibility;
 use airlight_tests::reference::scattering as reference;
 
 #[test]
 fn depths_are_rounded_to_steps() {
-    let _turn = gpu::turn();
     let probe = Probe {
         head: "#import airlight::scattering::visibility_rank::{rank_value, low_bits}",
         body: "output(0u, f32(rank_value(input(0u), u32(input(1u)))));
@@ -51,6 +50,5 @@ fn depths_are_rounded_to_steps() {
 
 #[test]
 fn counts_are_exactly_those_of_the_stepped_map() {
-    let _turn = gpu::turn();
     rank_rows::hold_counts(502, |bits| Visibility::Rank { bits });
 }

@@ -14,7 +14,6 @@ use reference::SteppedRow;
 
 #[test]
 fn pictures_mix_the_rows_about_a_ray_around_the_seam_too() {
-    let _turn = gpu::turn();
     const PICTURE: [u32; 2] = [160, 90];
     // So few rows that every pair counts, that of the last and the first among them.
     const MAP: [u32; 2] = [200, 8];
@@ -120,7 +119,6 @@ impl Case {
 
 #[test]
 fn pictures_reach_their_figures() {
-    let _turn = gpu::turn();
     let mut failures = Vec::new();
     for name in ["foliage", "torus", "plane", "terrain"] {
         let case = Case::new(name);
@@ -157,7 +155,6 @@ fn pictures_reach_their_figures() {
 
 #[test]
 fn what_ranks_cannot_do_is_refused() {
-    let _turn = gpu::turn();
     let rank = Settings { visibility: Visibility::Rank { bits: 12 }, map: [64, 16], ..Settings::default() };
     for bits in [0, 7, 13, 32, u32::MAX] {
         assert_eq!(

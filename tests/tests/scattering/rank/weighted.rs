@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Weighted means against their proven bound.
 
-use crate::gpu::{self, Random};
+use crate::gpu::Random;
 use crate::probing::hold;
 use crate::rank_rows::{KINDS, Query, Structure, clear_of_borders, queries, row_of_kind};
 use airlight::scattering::Weighting;
@@ -46,7 +46,6 @@ fn worst_row(width: usize) -> Vec<f32> {
 
 #[test]
 fn weighted_means_err_by_no_more_than_proven() {
-    let _turn = gpu::turn();
     let mut random = Random(503);
     let bits = 12;
     let steps =
@@ -107,7 +106,6 @@ fn weighted_means_err_by_no_more_than_proven() {
 
 #[test]
 fn eights_of_one_kind_in_the_first_block_are_all_but_exact() {
-    let _turn = gpu::turn();
     let structure = Structure::new(12, [32, 4], Weighting::Transmittance);
     // No rank lies left of the first block, and the mean of the weights of eight columns is that of their middle but for
     // 21/8 of the square of the optical depth of a texel.
@@ -149,7 +147,6 @@ fn eights_of_one_kind_in_the_first_block_are_all_but_exact() {
 
 #[test]
 fn air_that_is_opaque_within_a_texel_gives_a_visibility() {
-    let _turn = gpu::turn();
     let mut random = Random(504);
     for width in [1, 33, 1024] {
         let structure = Structure::new(12, [width, KINDS as u32], Weighting::Transmittance);

@@ -198,7 +198,6 @@ fn bound(row: &SteppedRow, stored: &[f32], weights: &[f64], query: [f32; 3], wei
 
 #[test]
 fn means_err_by_no_more_than_proven_whatever_the_weights() {
-    let _turn = gpu::turn();
     let mut random = Random(701);
     let mut failures = Vec::new();
     for (colors, weight_bits) in [(0, 16), (0, 8), (1, 8), (3, 8), (3, 16)] {
@@ -268,7 +267,6 @@ fn means_err_by_no_more_than_proven_whatever_the_weights() {
 
 #[test]
 fn equal_weights_are_counted_exactly() {
-    let _turn = gpu::turn();
     let mut random = Random(702);
     let passes = Passes::new(1, 8);
     for width in [1, 32, 33, 1024, 2048] {

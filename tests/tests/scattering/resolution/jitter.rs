@@ -2,7 +2,7 @@
 //! Shifted samples: blue noise, and coarse marches that are exact on average.
 
 use super::case::{Case, channels};
-use crate::gpu::{self, gpu};
+use crate::gpu::gpu;
 use crate::probing::f;
 use airlight::core::Jitter;
 use airlight::data::{BLUE_NOISE_SIDE, blue_noise};
@@ -76,7 +76,6 @@ fn blocks(values: &[f64], smooth: &[bool], [width, height]: [usize; 2]) -> Vec<f
 
 #[test]
 fn jitter_makes_a_coarse_march_exact_on_average() {
-    let _turn = gpu::turn();
     const STEPS: u32 = 16;
     let case = Case::new("foliage", [480, 270]);
     let inputs = case.stage.inputs();

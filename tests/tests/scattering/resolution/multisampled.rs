@@ -101,7 +101,6 @@ fn multisampled([width, height]: [u32; 2], depths: &[f32]) -> Texture {
 
 #[test]
 fn resolved_depths_scatter_what_their_samples_scatter() {
-    let _turn = gpu::turn();
     const LIMIT: f64 = 60.0;
     let size = [16_u32, 12];
     let mut random = Random(31);
@@ -184,7 +183,6 @@ fn resolved_depths_scatter_what_their_samples_scatter() {
 
 #[test]
 fn depth_textures_resolve_like_floats() {
-    let _turn = gpu::turn();
     let size = [16_u32, 12];
     let mut random = Random(3);
     let camera = gpu::host_camera(&random.camera(4.0 / 3.0), size);

@@ -57,7 +57,6 @@ fn average_radiance(picture: &reference::Picture) -> Vec<f64> {
 
 #[test]
 fn evaluated_pixels_are_those_of_the_full_picture() {
-    let _turn = gpu::turn();
     // A size that is no multiple of the factors.
     let case = Case::new("foliage", [479, 269]);
     let inputs = case.stage.inputs();
@@ -94,7 +93,6 @@ fn evaluated_pixels_are_those_of_the_full_picture() {
 
 #[test]
 fn upsampled_radiance_is_that_of_the_exact_picture() {
-    let _turn = gpu::turn();
     // Budgets at this size, where a leaf covers a quarter of the pixels that it covers at 1920x1080:
     // half, quarter.
     for (name, budgets) in
@@ -129,7 +127,6 @@ fn upsampled_radiance_is_that_of_the_exact_picture() {
 
 #[test]
 fn prefiltered_pictures_are_upsampled_as_well() {
-    let _turn = gpu::turn();
     let case = Case::new("foliage", [960, 540]);
     let inputs = case.stage.inputs();
     let settings = Settings { map: [512, 512], epipole_march: false, ..Settings::default() };

@@ -69,7 +69,6 @@ impl Bench {
 
 #[test]
 fn upsampling_is_joint_bilateral() {
-    let _turn = gpu::turn();
     let mut random = Random(77);
     let medium = Medium::new(0.05, Vec3::ONE, 0.3, 60.0).unwrap();
     let (mut worst, mut edges) = (0.0_f64, 0);
@@ -151,7 +150,6 @@ fn upsampling_is_joint_bilateral() {
 
 #[test]
 fn upsampled_radiance_follows_from_distance_and_phase() {
-    let _turn = gpu::turn();
     let mut random = Random(5);
     let medium = Medium::new(0.05, Vec3::splat(0.9), 0.4, 60.0).unwrap();
     let size = [40, 24];
@@ -184,7 +182,6 @@ fn upsampled_radiance_follows_from_distance_and_phase() {
 
 #[test]
 fn nothing_but_numbers_leaves_the_upsampling() {
-    let _turn = gpu::turn();
     let mut random = Random(9);
     let size = [37, 21];
     let wild = |random: &mut Random| match random.below(6) {

@@ -2,7 +2,6 @@
 //! Light in the stack of sheets: energy, the exact sum of all bounces, order, blur and surfaces.
 
 use super::kernels::over_cone;
-use crate::gpu::{self};
 use crate::light_stack::{LightStack, StackLight};
 use crate::probing::{f, hold};
 use airlight::splatting::{Scattering, SheetLighting};
@@ -31,7 +30,6 @@ fn lumps(sheet: u32, [x, y]: [u32; 2]) -> f32 {
 
 #[test]
 fn light_that_is_only_scattered_on_is_kept() {
-    let _turn = gpu::turn();
     let size = [72, 50];
     let even = |_, place| if within(place, size) { 0.7_f32 } else { 0.0 };
     let lumpy = |sheet, place| if within(place, size) { lumps(sheet, place) } else { 0.0 };
@@ -66,7 +64,6 @@ fn light_that_is_only_scattered_on_is_kept() {
 
 #[test]
 fn sweeps_come_within_a_percent_of_all_bounces() {
-    let _turn = gpu::turn();
     let (tau, albedo, g, cone) = (0.3_f64, 63.0 / 64.0, 0.45_f64, 90.0_f64);
     let shares = [g, -g].map(|g| over_cone(g, cone.to_radians(), |_| 1.0));
     let layers = [Layer::new(tau, albedo, shares); 20];
@@ -114,7 +111,6 @@ fn sweeps_come_within_a_percent_of_all_bounces() {
 
 #[test]
 fn more_scattering_is_more_light_at_every_texel() {
-    let _turn = gpu::turn();
     let size = [40, 36];
     let run = |scattering: Option<Scattering>, sweeps| -> StackLight {
         let stack = LightStack {
@@ -156,7 +152,6 @@ fn more_scattering_is_more_light_at_every_texel() {
 
 #[test]
 fn the_number_of_sheets_does_not_change_the_blur() {
-    let _turn = gpu::turn();
     // A wall of medium beside a clear half: what spreads across its edge is the blur.
     let size = [96, 16];
     let run = |count: u32, free_path: f32| -> Vec<f64> {
@@ -199,7 +194,6 @@ fn the_number_of_sheets_does_not_change_the_blur() {
 
 #[test]
 fn surfaces_take_light_away_and_hold_it() {
-    let _turn = gpu::turn();
     let size = [48, 24];
     // Surfaces in the left half, in the middle of the sixth sheet; in the last columns before the first.
     let heights = (0..48 * 24).map(|i| match i % 48 {

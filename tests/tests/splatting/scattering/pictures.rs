@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures in scattered light: order, nonsense, and settings that are refused.
 
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::probing::f;
 use crate::sheets::{self, colored, metres, shoot, splats};
 use airlight::core::{Camera, DepthRange, Light, PerspectiveView};
@@ -30,7 +30,6 @@ fn settings(transport: LightTransport, shading: Shading) -> SheetSettings {
 
 #[test]
 fn more_scattering_is_more_light_at_every_pixel() {
-    let _turn = gpu::turn();
     let mut volume = cloud([24, 14, 20], 5);
     volume.values.iter_mut().for_each(|value| *value /= 3.0);
     let splats = splats(&volume);
@@ -85,7 +84,6 @@ fn more_scattering_is_more_light_at_every_pixel() {
 
 #[test]
 fn nonsense_leaves_no_hole() {
-    let _turn = gpu::turn();
     let mut volume = cloud([24, 14, 20], 5);
     let middle = (10 * 14 + 7) * 24 + 8;
     for (place, value) in

@@ -2,7 +2,6 @@
 //! The shadow of a ball against rays to a square.
 
 use super::lights::{lamp, sun};
-use crate::gpu::{self};
 use crate::probing::f;
 use crate::soft_light::{Lit, vector};
 use airlight::splatting::SoftShadows;
@@ -37,7 +36,6 @@ fn ball(lit: &Lit, square: &Square, depth: f32) -> [f64; 3] {
 
 #[test]
 fn a_ball_casts_the_shadow_of_a_ball() {
-    let _turn = gpu::turn();
     let far =
         (sun(Vec3::Y), 10.0_f32, Square::Far { towards: vector(DVec3::Y), angle: 10.0_f64.to_radians() });
     let middle = vector(DVec3::Y * 9.0);

@@ -2,7 +2,6 @@
 //! Penumbras of half-planes, between sheets of their own.
 
 use super::lights::{lamp, sun};
-use crate::gpu::{self};
 use crate::probing::f;
 use crate::soft_light::{Lit, crossings};
 use airlight::core::Light;
@@ -42,7 +41,6 @@ pub fn place_on_light(light: &Light, point: DVec3, height: f64, edge: f64) -> f6
 
 #[test]
 fn penumbras_of_half_planes_have_their_width_at_any_tilt() {
-    let _turn = gpu::turn();
     let (side, count) = (160, 64);
     let cases = [
         (sun(Vec3::Y), 10.0_f32),
@@ -90,7 +88,6 @@ fn penumbras_of_half_planes_have_their_width_at_any_tilt() {
 
 #[test]
 fn two_half_planes_have_a_penumbra_each() {
-    let _turn = gpu::turn();
     let light = sun(Vec3::Y);
     let width = 2.0 * 5.0_f64.to_radians().tan();
     for angle in [0.0_f32, 60.0] {

@@ -3,7 +3,7 @@
 
 use super::half_planes::corners;
 use super::lights::{lamp, sun};
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::probing::f;
 use crate::sheets::{self, colored, metres, parallel, shoot, splats};
 use crate::soft_light::Lit;
@@ -17,7 +17,6 @@ use glam::Vec3;
 
 #[test]
 fn a_point_of_light_casts_hard_shadows() {
-    let _turn = gpu::turn();
     let mut volume = cloud([24, 14, 20], 5);
     volume.values.iter_mut().for_each(|value| *value /= 3.0);
     let bounds = volume.bounds();
@@ -52,7 +51,6 @@ fn a_point_of_light_casts_hard_shadows() {
 
 #[test]
 fn nonsense_leaves_no_hole() {
-    let _turn = gpu::turn();
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38, -3e38, 1e30, -1e30, 0.0];
     for light in [sun(Vec3::Y), lamp(Vec3::Y * 6.0)] {
         for size in [0.0, if light.kind == 0 { 60.0 } else { 1e6 }] {

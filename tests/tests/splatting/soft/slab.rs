@@ -3,7 +3,7 @@
 
 use super::half_planes::place_on_light;
 use super::lights::{lamp, sun};
-use crate::gpu::{self, gpu, shaders};
+use crate::gpu::{gpu, shaders};
 use crate::probing::f;
 use crate::sheets::{colored, metres, parallel, splats};
 use crate::soft_light::{Lit, crossings};
@@ -16,7 +16,6 @@ use glam::Vec3;
 
 #[test]
 fn a_slab_of_splats_has_the_same_penumbra() {
-    let _turn = gpu::turn();
     let kernel = Kernel::new(0.7, 2.25);
     let step = 2.25 / 4000.0;
     let fourth = |i: u32| {

@@ -89,7 +89,6 @@ fn every_texel([width, height]: [u32; 2]) -> Vec<[usize; 2]> {
 
 #[test]
 fn the_direct_form_is_equation_3_everywhere() {
-    let _turn = gpu::turn();
     let mut random = Random(81);
     let mut tally = Tally::new();
     for size in [[1, 1], [1, 9], [7, 1], [5, 4], [33, 20], [64, 64], [128, 128]] {
@@ -115,7 +114,6 @@ fn the_direct_form_is_equation_3_everywhere() {
 
 #[test]
 fn the_direct_form_is_equation_3_at_random_texels_of_large_maps() {
-    let _turn = gpu::turn();
     let mut random = Random(82);
     let mut tally = Tally::new();
     // Large along one axis each: a place of 2000 texels is as coarse in f32 in a narrow map as in a square one.
@@ -147,7 +145,6 @@ fn the_direct_form_is_equation_3_at_random_texels_of_large_maps() {
 
 #[test]
 fn the_rectified_form_is_the_direct_one_within_resampling() {
-    let _turn = gpu::turn();
     let mut random = Random(83);
     let mut tally = Tally::new();
     for size in [[1, 1], [1, 9], [40, 33], [96, 128]] {
@@ -179,7 +176,6 @@ fn the_rectified_form_is_the_direct_one_within_resampling() {
 
 #[test]
 fn both_forms_agree_on_a_drawn_map() {
-    let _turn = gpu::turn();
     let size = [512, 512];
     let stage = gpu::torus_over_plane().stage([64, 64], size);
     let epipole = Epipole::new(&stage.light, &stage.camera, size).unwrap();

@@ -13,7 +13,6 @@ use glam::Vec2;
 
 #[test]
 fn closings_and_openings_keep_their_promises() {
-    let _turn = gpu::turn();
     let mut random = Random(84);
     let size = [70, 90];
     for (name, epipole) in epipoles(&mut random, size) {
@@ -49,7 +48,6 @@ fn closings_and_openings_keep_their_promises() {
 #[test]
 fn closings_of_parallel_lines_are_idempotent() {
     // Along rows no resampling takes place: what the lattice promises holds to the last bit of depth.
-    let _turn = gpu::turn();
     let mut random = Random(85);
     let size = [90, 40];
     let epipole = Epipole { position: Vec2::NEG_X, depth: -0.01, weight: 0.0 };
@@ -67,7 +65,6 @@ fn closings_of_parallel_lines_are_idempotent() {
 
 #[test]
 fn empty_texels_extrude_nothing_where_the_eye_is_beyond_the_far_plane() {
-    let _turn = gpu::turn();
     let size = [48, 48];
     let epipole = Epipole { position: Vec2::new(10.3, 20.9), depth: 3.0, weight: 1.0 };
     for form in [Form::Direct, Form::Rectified] {
@@ -83,7 +80,6 @@ fn empty_texels_extrude_nothing_where_the_eye_is_beyond_the_far_plane() {
 
 #[test]
 fn what_is_added_stays_hidden_from_the_camera() {
-    let _turn = gpu::turn();
     let size = [128_u32, 128];
     for scene in [gpu::torus_over_plane(), gpu::small_tree()] {
         let stage = scene.stage([64, 64], size);

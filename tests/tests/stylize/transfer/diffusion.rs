@@ -2,14 +2,13 @@
 //! Diffusion of constraints against the converged solution in f64.
 
 use super::baking::{at, baked, color, diffusion, greatest, premultiplied, random_color, transfer};
-use crate::gpu::{self, Random};
+use crate::gpu::Random;
 use crate::probing::{f, hold};
 use airlight::stylize::Place;
 use airlight_tests::reference::stylize::transfer as reference;
 
 #[test]
 fn diffusion_is_within_a_step_of_the_converged_solution() {
-    let _turn = gpu::turn();
     let mut random = Random(11);
     let mut overall = 0.0_f64;
     let cases = [
@@ -50,7 +49,6 @@ fn diffusion_is_within_a_step_of_the_converged_solution() {
 
 #[test]
 fn one_constraint_is_flat_and_two_are_a_gradient() {
-    let _turn = gpu::turn();
     let one = baked(&transfer(256, vec![diffusion(vec![at(0.3, 0.7, color([0.25, 0.5, 0.75], 0.5))])]));
     assert!(one.iter().all(|texel| *texel == [0.125, 0.25, 0.375, 0.5]), "one constraint is one colour");
     // From left to right at the height of both, nothing turns back.
@@ -66,7 +64,6 @@ fn one_constraint_is_flat_and_two_are_a_gradient() {
 
 #[test]
 fn transparency_takes_its_colour_along() {
-    let _turn = gpu::turn();
     let ends = vec![at(0.25, 0.5, color([1.0, 0.0, 0.0], 1.0)), at(0.75, 0.5, color([0.0, 0.0, 1.0], 0.0))];
     let found = baked(&transfer(129, vec![diffusion(ends)]))[64 * 129 + 64];
     let expected = [0.5, 0.0, 0.0, 0.5];

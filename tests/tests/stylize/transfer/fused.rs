@@ -158,7 +158,6 @@ const RANK: Visibility = Visibility::Rank { bits: 12 };
 
 #[test]
 fn directional_lights_are_restyled_as_by_a_pass_of_its_own() {
-    let _turn = gpu::turn();
     let scene = gpu::torus_over_plane();
     let torus = stage(&scene, sun(&scene), None);
     prefiltered("torus, Fourier bases", &torus, Settings::default());
@@ -178,7 +177,6 @@ fn directional_lights_are_restyled_as_by_a_pass_of_its_own() {
 
 #[test]
 fn lights_at_a_point_are_restyled_as_by_a_pass_of_its_own() {
-    let _turn = gpu::turn();
     let scene = gpu::torus_over_plane();
     for (name, light) in [("spot", spot()), ("point light", point())] {
         let stage = stage(&scene, light, None);
@@ -190,7 +188,6 @@ fn lights_at_a_point_are_restyled_as_by_a_pass_of_its_own() {
 
 #[test]
 fn projective_rows_are_restyled_as_by_a_pass_of_its_own() {
-    let _turn = gpu::turn();
     let scene = gpu::torus_over_plane();
     let stage = stage(&scene, sun(&scene), None);
     let limit = stage.medium.distance_limit;
@@ -214,7 +211,6 @@ fn projective_rows_are_restyled_as_by_a_pass_of_its_own() {
 
 #[test]
 fn nothing_but_numbers_leaves_the_pass() {
-    let _turn = gpu::turn();
     let mut random = Random(53);
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 6e4, -6e4, 0.0, 0.7];
     let scene = gpu::small_tree();
@@ -269,7 +265,6 @@ fn nothing_but_numbers_leaves_the_pass() {
 
 #[test]
 fn what_an_evaluation_does_not_know_is_an_error() {
-    let _turn = gpu::turn();
     let scene = gpu::torus_over_plane();
     let stage = stage(&scene, sun(&scene), None);
     let settings = Settings { map: [64, 64], ..Settings::default() };

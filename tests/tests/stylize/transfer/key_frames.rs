@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 
 #[test]
 fn key_frames_are_mixed_linearly() {
-    let _turn = gpu::turn();
     let style = |left: [f32; 3], limit: f32, mode: Mode| {
         let mut style = transfer(
             64,
@@ -78,7 +77,6 @@ fn numbers_follow_their_key_frames() {
 
 #[test]
 fn a_style_is_the_same_in_every_scene() {
-    let _turn = gpu::turn();
     let examples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/transfer");
     let folder = tempfile::tempdir().unwrap();
     let (torus, tree) = (gpu::torus_over_plane(), gpu::small_tree());

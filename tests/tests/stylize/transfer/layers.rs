@@ -2,7 +2,7 @@
 //! Layers and how they are blended.
 
 use super::baking::{baked, greatest, premultiplied, random_color, straight, transfer};
-use crate::gpu::{self, Random};
+use crate::gpu::Random;
 use crate::probing::{f, hold};
 use airlight::stylize::{Blend, Layer, Source, TransferImage};
 use airlight_tests::reference::stylize::transfer as reference;
@@ -35,7 +35,6 @@ fn layer_color(layer: &Layer, [x, y]: [f64; 2], size: u32) -> [f64; 4] {
 
 #[test]
 fn layers_are_blended_as_the_equations_say() {
-    let _turn = gpu::turn();
     let mut random = Random(23);
     let mut error = 0.0_f64;
     for stack in 0..40 {

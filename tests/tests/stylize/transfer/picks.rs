@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 
 #[test]
 fn a_picked_pixel_has_its_colour_and_a_point_that_of_its_pixel() {
-    let _turn = gpu::turn();
     let of = gpu::torus_over_plane();
     let stage = of.stage(PICTURE, [512, 512]);
     let scattered = marched(&stage);
@@ -73,7 +72,6 @@ fn a_picked_pixel_has_its_colour_and_a_point_that_of_its_pixel() {
 
 #[test]
 fn impossible_picks_are_errors() {
-    let _turn = gpu::turn();
     let stage = gpu::torus_over_plane().stage(PICTURE, [64, 64]);
     let scattered = marched(&stage);
     let movements = BTreeMap::from([("torus".to_owned(), Vec3::ZERO)]);
@@ -104,7 +102,6 @@ fn impossible_picks_are_errors() {
 
 #[test]
 fn the_mean_place_of_lit_points_is_found_by_marching() {
-    let _turn = gpu::turn();
     let of = gpu::torus_over_plane();
     let stage = of.stage(PICTURE, [512, 512]);
     let scattered = marched(&stage);

@@ -19,7 +19,6 @@ fn all_pixels() -> Vec<Place> {
 
 #[test]
 fn rays_lie_where_their_properties_say() {
-    let _turn = gpu::turn();
     let mut random = Random(37);
     use RayProperty::{Depth, LightAngle, PictureAngle, Visibility};
     let mut errors = [0.0_f64; 4];
@@ -94,7 +93,6 @@ fn restyle(picture: &Synthetic, function: &TransferFunction, map: &Texture) -> T
 
 #[test]
 fn every_mode_makes_of_a_colour_what_it_should() {
-    let _turn = gpu::turn();
     let mut random = Random(41);
     let mut error = 0.0_f64;
     for round in 0..24 {
@@ -144,7 +142,6 @@ fn every_mode_makes_of_a_colour_what_it_should() {
 
 #[test]
 fn strength_leads_from_one_light_to_the_other() {
-    let _turn = gpu::turn();
     let mut random = Random(43);
     let picture = Synthetic::new(&mut random);
     let map = smooth_map(&mut random, 8);
@@ -164,7 +161,6 @@ fn strength_leads_from_one_light_to_the_other() {
 
 #[test]
 fn nothing_but_numbers_leaves_the_pass() {
-    let _turn = gpu::turn();
     let mut random = Random(47);
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 6e4, -6e4, 0.0];
     for round in 0..12 {
