@@ -50,7 +50,7 @@ check-built:
 	fi; \
 	set -x; $(VALIDATE) check wgsl $${require:+--require "$$require"}
 
-# Recorded with the tests of snapshots, repeated in a browser.
+# Recorded with the tests of snapshots, one after another since they share a recorder, and repeated in a browser.
 .PHONY: portability
 portability: driver rust ## Every pass of the snapshots again, from its flat file, in headless Chromium
 	@command -v node >/dev/null || { echo "portability: node is not on the PATH; install Node.js 20 or later" >&2; exit 1; }
@@ -60,7 +60,7 @@ portability: driver rust ## Every pass of the snapshots again, from its flat fil
 	rm -rf target/portability
 	cargo test $(CARGO_FLAGS) --test snapshots --test snapshots_ambient --no-run
 	for test in snapshots snapshots_ambient; do \
-	    AIRLIGHT_CAPTURE="$(CURDIR)/target/portability/$$test" cargo test --quiet $(CARGO_FLAGS) --test $$test || exit 1; \
+	    AIRLIGHT_CAPTURE="$(CURDIR)/target/portability/$$test" cargo test --quiet $(CARGO_FLAGS) --test $$test -- --test-threads=1 || exit 1; \
 	done
 	node tests/browser/portability/run.js
 
