@@ -2,7 +2,7 @@
 //! `airlight scattering`: what its flags do, two eyes, and awkward sizes. Every light against a march is in
 //! `scattering.rs`.
 
-use crate::command::succeeds;
+use crate::command::{draws_finite, succeeds};
 use crate::hall::{EYE, scene};
 use crate::hall_runs::{Run, SUN};
 use airlight_tests::error::relative_rmse;
@@ -123,10 +123,6 @@ fn awkward_sizes_draw() {
         // Wider than rank queries take: bases.
         "--size 3x2 --map 2049x2 --shadow-map 2x2",
     ] {
-        let mut arguments = vec!["scattering", "--mesh", "hall.obj", "--out", "x.exr"];
-        arguments.extend(flags.split(' '));
-        succeeds(at.path(), &arguments);
-        let picture = image::open(at.path().join("x.exr")).unwrap().into_rgba32f();
-        assert!(picture.as_raw().iter().all(|value| value.is_finite()), "{flags}");
+        draws_finite(at.path(), &format!("scattering --mesh hall.obj --out x.exr {flags}"));
     }
 }

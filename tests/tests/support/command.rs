@@ -68,6 +68,14 @@ pub fn succeeds(folder: &Path, arguments: &[&str]) -> Ended {
     ended
 }
 
+/// Runs a line that writes `x.exr`, and expects a finite number everywhere in it.
+#[track_caller]
+pub fn draws_finite(folder: &Path, line: &str) {
+    succeeds(folder, &words(line));
+    let picture = image::open(folder.join("x.exr")).unwrap().into_rgba32f();
+    assert!(picture.as_raw().iter().all(|value| value.is_finite()), "{line}");
+}
+
 /// Every file below a folder with its contents.
 pub fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
